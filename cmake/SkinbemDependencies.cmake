@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Everything here is a Debian 12 package; scripts/setup.sh lists and installs them.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OPENBLAS REQUIRED IMPORTED_TARGET openblas)
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
+if(SKINBEM_WITH_CHOLMOD)
+  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+  find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+endif()
+find_package(nlohmann_json 3.11 REQUIRED)
+if(SKINBEM_BUILD_APPS)
+  find_package(CLI11 REQUIRED)
+  find_package(fmt REQUIRED)
+endif()
