@@ -7,5 +7,9 @@ namespace skinbem::tolerance {
 
 /// A short chain of additions and products in double.
 inline constexpr double rounding = 1e-14;
+/// Sums of some hundred terms of size 1.
+inline constexpr double rounding_of_sums = 1e-12;
+/// The same on a body of size 1 at a distance of 3000: its coordinates carry 3000 times the rounding.
+inline constexpr double rounding_far_away = 1e-11;
 
 }  // namespace skinbem::tolerance
