@@ -11,5 +11,7 @@ inline constexpr double rounding = 1e-14;
 inline constexpr double rounding_of_sums = 1e-12;
 /// The same on a body of size 1 at a distance of 3000: its coordinates carry 3000 times the rounding.
 inline constexpr double rounding_far_away = 1e-11;
+/// A moment of a quadrature rule: at most some hundred positive terms of sum below one, each rounded once.
+inline constexpr double quadrature_rule = 2e-15;
 
 }  // namespace skinbem::tolerance
