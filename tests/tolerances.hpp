@@ -14,4 +14,9 @@ inline constexpr double rounding_far_away = 1e-11;
 /// A moment of a quadrature rule: at most some hundred positive terms of sum below one, each rounded once.
 inline constexpr double quadrature_rule = 2e-15;
 
+/// A frame in float against its exact value: a few roundings of single precision, relative to the largest coordinate.
+inline constexpr double frame_rigid = 1e-6;
+/// The same in double, of landmark positions that were themselves rounded.
+inline constexpr double frame_reference = 1e-12;
+
 }  // namespace skinbem::tolerance

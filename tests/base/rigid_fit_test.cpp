@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cstdlib>
 
 #include "tolerances.hpp"
 
@@ -33,6 +36,50 @@ TEST(RigidFit, NeverReflects) {
   Points planar = points;
   planar.col(2).setZero();
   EXPECT_NEAR(fit_rigid(planar, planar).rotation.determinant(), 1, tolerance::rounding);
+}
+
+/// The textbook's answer: U diag(1, 1, det) V^T.
+Mat3 rotation_by_svd(const Mat3& m) {
+  const Eigen::JacobiSVD<Mat3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  return svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+TEST(NearestRotation, AgreesWithTheSingularValueDecompositionForEveryKindOfPointSet) {
+  std::srand(1);
+  // Singular values, signed: solid, flat, mirrored, nearly a line, equal ones, mirrored so that the answer is delicate.
+  for (const Vec3& values :
+       {Vec3(3, 2, 1), Vec3(3, 2, 0), Vec3(3, 2, -1), Vec3(1, 1e-3, 0), Vec3(1, 1, 1), Vec3(1, 1, 0), Vec3(1, 1, -0.9),
+        Vec3(1, 0.5, -0.499), Vec3(1e-200, 1e-201, 0), Vec3(1e150, 1e149, -1e148)}) {
+    for (int i = 0; i < 200; ++i) {
+      const Mat3 u = Eigen::Quaterniond::UnitRandom().toRotationMatrix();
+      const Mat3 v = Eigen::Quaterniond::UnitRandom().toRotationMatrix();
+      const Mat3 m = u * values.asDiagonal() * v.transpose();
+      const double condition = values(0) / (values(1) + values(2));
+      const Mat3 q = nearest_rotation(m);
+      EXPECT_LE((q - rotation_by_svd(m)).cwiseAbs().maxCoeff(), tolerance::rounding * condition) << values.transpose();
+      EXPECT_LE((q * q.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff(), tolerance::rounding);
+    }
+  }
+}
+
+TEST(NearestRotation, IsARotationEvenWhereNoneIsDetermined) {
+  const Vec3 axis(1, 2, -3);
+  for (const Mat3& m : {Mat3(Mat3::Zero()), Mat3(axis * axis.transpose()), Mat3(-Mat3::Identity()),
+                        Mat3(Vec3(1, 1, -1).asDiagonal())}) {
+    const Mat3 q = nearest_rotation(m);
+    EXPECT_LE((q * q.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff(), tolerance::rounding);
+    EXPECT_NEAR(q.determinant(), 1, tolerance::rounding);
+  }
+}
+
+TEST(RigidFit, TakesDisplacementsInPlaceOfPositions) {
+  const Points points = Points::Random(5, 3);
+  const Points displacement = Points::Random(5, 3);
+  const RigidMotion expected = fit_rigid(points, points + displacement);
+  const RigidMotion found = fit_rigid_displacement(points, displacement);
+  EXPECT_LE((found.rotation - expected.rotation).cwiseAbs().maxCoeff(), tolerance::rounding);
+  EXPECT_LE((found.translation - expected.translation).cwiseAbs().maxCoeff(), tolerance::rounding);
 }
 
 TEST(RigidFit, MeasuresHowFarPointsAreFromALine) {

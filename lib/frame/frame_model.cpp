@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/frame/frame_model.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <skinbem/base/error.hpp>
+#include <skinbem/base/rigid_fit.hpp>
+
+namespace skinbem {
+namespace {
+
+/// Numbers beyond this never enter a frame; the margin to the largest float holds the rotation and translation.
+constexpr double kLargest = 1e-2 * std::numeric_limits<float>::max();
+/// Landmarks whose second extent is below this share of the first leave the rotation about their line to noise.
+constexpr double kNearlyCollinear = 0.02;
+
+std::string shape(const auto& matrix) { return std::to_string(matrix.rows()) + " by " + std::to_string(matrix.cols()); }
+
+void check_shapes(const Points& rest, const Eigen::MatrixXd& response, const Points& landmark_rest) {
+  if (rest.rows() == 0 || landmark_rest.rows() == 0) {
+    throw Error(ErrorCode::usage, "frame: a skin needs at least one vertex and one landmark");
+  }
+  if (response.rows() != 3 * rest.rows() || response.cols() != 3 * landmark_rest.rows()) {
+    throw Error(ErrorCode::usage,
+                "frame: the response matrix is " + shape(response) + ", but " + std::to_string(rest.rows()) +
+                    " vertices and " + std::to_string(landmark_rest.rows()) + " landmarks need " +
+                    std::to_string(3 * rest.rows()) + " by " + std::to_string(3 * landmark_rest.rows()));
+  }
+}
+
+void check_numbers(const char* name, const auto& matrix) {
+  for (Index j = 0; j < matrix.cols(); ++j) {
+    for (Index i = 0; i < matrix.rows(); ++i) {
+      if (!(std::abs(matrix(i, j)) <= kLargest)) {
+        throw Error(ErrorCode::bad_input, std::string("frame: ") + name + " has " + std::to_string(matrix(i, j)) +
+                                              " at row " + std::to_string(i) + ", column " + std::to_string(j) +
+                                              "; it must be finite and within the range of float");
+      }
+    }
+  }
+}
+
+/// Panels of [X - centre, R]; see detail::PanelMatrix.
+detail::AlignedVector<float> packed(const Points& rest, const Vec3& centre, const Eigen::MatrixXd& response) {
+  const detail::PanelMatrix matrix{nullptr, static_cast<std::size_t>(rest.rows()),
+                                   static_cast<std::size_t>(response.cols())};
+  detail::AlignedVector<float> panels(matrix.panels() * matrix.panel_floats(), 0.0F);
+  for (Index i = 0; i < rest.rows(); ++i) {
+    const auto vertex = static_cast<std::size_t>(i);
+    float* panel = panels.data() + vertex / detail::kPanelWidth * matrix.panel_floats() + vertex % detail::kPanelWidth;
+    for (Index c = 0; c < 3; ++c) {
+      float* element = panel + c * detail::kPanelWidth;
+      *element = static_cast<float>(rest(i, c) - centre(c));
+      for (Index k = 0; k < response.cols(); ++k) {
+        *(element += detail::kColumnFloats) = static_cast<float>(response(3 * i + c, k));
+      }
+    }
+  }
+  return panels;
+}
+
+}  // namespace
+
+FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, const Points& landmark_rest, FrameMode mode)
+    : vertex_count_(static_cast<std::size_t>(rest.rows())), landmark_rest_(landmark_rest), mode_(mode) {
+  check_shapes(rest, response, landmark_rest);
+  check_numbers("the rest position", rest);
+  check_numbers("the response matrix", response);
+  check_numbers("the landmark position", landmark_rest);
+  centre_ = rest.colwise().mean();
+  largest_weight_ = kLargest / std::max(1.0, response.cwiseAbs().rowwise().sum().maxCoeff());
+  panels_ = packed(rest, centre_, response);
+  if (mode == FrameMode::corotated && collinear_measure(landmark_rest) < kNearlyCollinear) {
+    warnings_.push_back(
+        "the landmarks are nearly collinear, so the rotation of the body about their line is not determined: add a "
+        "landmark off the line, or use the linear frame");
+  }
+}
+
+FrameState::FrameState(const FrameModel& model)
+    : model_(&model),
+      motion_(BodyMotion::at_rest(model.landmark_count())),
+      candidate_(motion_),
+      weights_(static_cast<std::size_t>(motion_.weights.size()), 0.0F) {}
+
+bool FrameState::set_landmarks(const Eigen::Ref<const Points>& displacements) noexcept {
+  if (displacements.rows() != model_->landmark_count()) return false;
+  // Written so that NaN fails. Checked before the fit, which would spread one bad number over all.
+  if (!(displacements.array().abs() <= model_->largest_weight_).all()) return false;
+  split_motion(model_->landmark_rest_, displacements, model_->mode_, candidate_);
+  if (!(candidate_.weights.array().abs() <= model_->largest_weight_).all() ||
+      !(candidate_.rigid.translation.array().abs() <= kLargest).all()) {
+    return false;
+  }
+  std::swap(motion_, candidate_);
+  for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] = static_cast<float>(motion_.weights[Index(k)]);
+  return true;
+}
+
+detail::FrameFactors FrameState::factors() const noexcept {
+  detail::FrameFactors factors{weights_.data()};
+  const Vec3 translation = motion_.rigid(model_->centre_);
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 3; ++j) factors.rotation[3 * i + j] = static_cast<float>(motion_.rigid.rotation(i, j));
+    factors.translation[i] = static_cast<float>(translation(i));
+  }
+  return factors;
+}
+
+bool FrameState::evaluate(std::span<float> positions) const noexcept {
+  const detail::PanelMatrix matrix = model_->matrix();
+  if (positions.size() != 3 * matrix.vertices) return false;
+  const detail::FrameFactors frame = factors();
+  const detail::FrameTarget target{positions.data(), 3};
+  detail::panel_product(matrix, 0, matrix.panels(), &frame, &target, 1);
+  return true;
+}
+
+bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept {
+  if (frames.empty()) return positions.empty();
+  const FrameModel& model = frames.front().model();
+  const detail::PanelMatrix matrix = model.matrix();
+  const std::size_t frame_floats = 3 * matrix.vertices;
+  if (positions.size() != frames.size() * frame_floats) return false;
+  for (const FrameState& frame : frames) {
+    if (&frame.model() != &model) return false;
+  }
+  // Few enough that the factors stay on the stack, and a panel in the first-level cache, while all of them use it.
+  constexpr std::size_t kGroup = 32;
+  std::array<detail::FrameFactors, kGroup> factors;
+  std::array<detail::FrameTarget, kGroup> targets;
+  for (std::size_t begin = 0; begin < frames.size(); begin += kGroup) {
+    const std::size_t count = std::min(kGroup, frames.size() - begin);
+    for (std::size_t f = 0; f < count; ++f) {
+      factors[f] = frames[begin + f].factors();
+      targets[f] = {positions.data() + (begin + f) * frame_floats, 3};
+    }
+    detail::panel_product(matrix, 0, matrix.panels(), factors.data(), targets.data(), count);
+  }
+  return true;
+}
+
+}  // namespace skinbem

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Real time: a skin that follows its landmarks, one call a frame.
+///
+///     const FrameModel model(mesh.vertices, response, landmark_rest);    // offline, once; throws Error
+///     FrameState state(model);                                           // one for each character
+///     std::vector<float> positions(3 * model.vertex_count());
+///     while (running) {
+///       if (!state.set_landmarks(displacements)) warn();                 // not finite: refused, the last pose stays
+///       state.evaluate(positions);                                       // noexcept, no allocation
+///     }
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <skinbem/base/types.hpp>
+#include <skinbem/frame/aligned_buffer.hpp>
+#include <skinbem/frame/body_motion.hpp>
+#include <skinbem/frame/panel_product.hpp>
+
+namespace skinbem {
+
+class FrameState;
+
+/// Rest positions and response matrix of a skin, packed for frames in single precision. Immutable: any number of states
+/// and threads share one.
+class FrameModel {
+ public:
+  /// `rest`: X, #V by 3. `response`: R, 3 #V by 3 #K, rows node-major, columns landmark-major, x, y, z.
+  /// `landmark_rest`: p_k = m_k(X), #K by 3. Lengths in the unit of the mesh. Copies what it needs. Throws Error(usage)
+  /// on shapes that do not fit and Error(bad_input) on numbers that are not finite or beyond float.
+  FrameModel(const Points& rest, const Eigen::MatrixXd& response, const Points& landmark_rest,
+             FrameMode mode = FrameMode::corotated);
+
+  Index vertex_count() const noexcept { return static_cast<Index>(vertex_count_); }
+  Index landmark_count() const noexcept { return landmark_rest_.rows(); }
+  FrameMode mode() const noexcept { return mode_; }
+  const Points& landmark_rest() const noexcept { return landmark_rest_; }
+  /// What a user should know, in sentences: landmarks so near to a line that they leave a rotation of the body open.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  /// Bytes that a frame reads: R and the rest positions.
+  std::size_t bytes() const noexcept { return panels_.size() * sizeof(float); }
+
+ private:
+  friend class FrameState;
+  friend bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
+
+  detail::PanelMatrix matrix() const noexcept {
+    return {panels_.data(), vertex_count_, static_cast<std::size_t>(3 * landmark_rest_.rows())};
+  }
+
+  std::size_t vertex_count_;
+  Points landmark_rest_;
+  FrameMode mode_;
+  Vec3 centre_;            ///< the packed rest positions are relative to it: floats are finest about zero
+  double largest_weight_;  ///< weights up to here cannot overflow a float on their way
+  detail::AlignedVector<float> panels_;
+  std::vector<std::string> warnings_;
+};
+
+/// The pose of one character; refers to its model, which must outlive it. Setting and evaluating neither allocate nor
+/// lock nor throw. Distinct states may be used from distinct threads at once.
+class FrameState {
+ public:
+  /// At rest.
+  explicit FrameState(const FrameModel& model);
+
+  /// Displacements u_k of the landmarks, #K by 3, mesh frame. Returns false, and keeps the pose as it was, where the
+  /// shape is wrong or a number is not finite or so large (about 1e37 / |R|) that a float would overflow.
+  bool set_landmarks(const Eigen::Ref<const Points>& displacements) noexcept;
+
+  /// Writes the positions of all vertices, x, y, z adjacent, mesh frame: always finite. The same bits at every call and
+  /// on any number of threads, on one instruction set. Returns false and writes nothing unless positions.size() is 3
+  /// #V.
+  bool evaluate(std::span<float> positions) const noexcept;
+
+  /// (Q, t) and q of the present pose: the node's track and the morph weights of a glTF animation.
+  const BodyMotion& motion() const noexcept { return motion_; }
+  const FrameModel& model() const noexcept { return *model_; }
+
+ private:
+  friend bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
+
+  detail::FrameFactors factors() const noexcept;
+
+  const FrameModel* model_;
+  BodyMotion motion_;
+  BodyMotion candidate_;
+  detail::AlignedVector<float> weights_;
+};
+
+/// Many frames, or many characters, of one model as a matrix product: R is read once for all of them. Frame f goes to
+/// positions[3 #V f ...], the same bits as frames[f].evaluate(). Returns false and writes nothing where the frames
+/// belong to different models or positions.size() is not 3 #V times their number.
+bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
+
+}  // namespace skinbem

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/frame/frame_model.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include <skinbem/base/error.hpp>
+
+#include "frame/models.hpp"
+#include "tolerances.hpp"
+
+namespace skinbem {
+namespace {
+
+using testing_support::evaluated;
+using testing_support::rigid_displacements;
+using testing_support::some_motion;
+using testing_support::synthetic_skin;
+using testing_support::SyntheticSkin;
+
+double largest_difference(const Points& a, const Points& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// Random displacements of `size` on top of a rotation of the whole body.
+Points bent(const SyntheticSkin& skin, double angle, double size) {
+  return rigid_displacements(skin.landmarks, some_motion(angle)) + size * Points::Random(skin.landmarks.rows(), 3);
+}
+
+TEST(Frame, RigidMotionOfTheLandmarksMovesTheSkinRigidly) {
+  const SyntheticSkin skin = synthetic_skin(606, 6);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  FrameState state(model);
+  for (const double angle : {0.0, 0.1, 1.0, 2.5, M_PI}) {
+    const RigidMotion motion = some_motion(angle);
+    ASSERT_TRUE(state.set_landmarks(rigid_displacements(skin.landmarks, motion)));
+    const Points expected = skin.rest + rigid_displacements(skin.rest, motion);
+    const double size = expected.cwiseAbs().maxCoeff();
+    EXPECT_LE(largest_difference(evaluated(state), expected), tolerance::frame_rigid * size);
+    const Points reference = evaluate_reference(skin.rest, skin.response, state.motion());
+    EXPECT_LE(largest_difference(reference, expected), tolerance::frame_reference * size);
+  }
+}
+
+TEST(Frame, AgreesWithTheReferenceForAnySizeAndMode) {
+  for (const FrameMode mode : {FrameMode::corotated, FrameMode::linear}) {
+    for (const Index vertices : {1, 7, 31, 32, 33, 64, 606, 1000}) {
+      const SyntheticSkin skin = synthetic_skin(vertices, 1 + vertices % 9);
+      const FrameModel model(skin.rest, skin.response, skin.landmarks, mode);
+      FrameState state(model);
+      EXPECT_LE(largest_difference(evaluated(state), skin.rest), tolerance::frame_rigid * 1000);
+      ASSERT_TRUE(state.set_landmarks(bent(skin, 0.4, 10)));
+      const Points reference = evaluate_reference(skin.rest, skin.response, state.motion());
+      EXPECT_LE(largest_difference(evaluated(state), reference), tolerance::frame_rigid * 1000) << vertices;
+    }
+  }
+}
+
+TEST(Frame, LinearModeIsRestPlusResponseTimesDisplacement) {
+  const SyntheticSkin skin = synthetic_skin(50, 4);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks, FrameMode::linear);
+  FrameState state(model);
+  const Points displacement = bent(skin, 0.5, 5);
+  ASSERT_TRUE(state.set_landmarks(displacement));
+  const Eigen::VectorXd moved = skin.response * Eigen::Map<const Eigen::VectorXd>(displacement.data(), 12);
+  EXPECT_LE(largest_difference(evaluated(state), skin.rest + Eigen::Map<const Points>(moved.data(), 50, 3)),
+            tolerance::frame_rigid * 1000);
+}
+
+TEST(Frame, CorotatedSkinTurnsWithTheBodyThatIsDeformedAlike) {
+  const SyntheticSkin skin = synthetic_skin(100, 6);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  FrameState state(model);
+  const Points displacement = bent(skin, 0, 8);
+  ASSERT_TRUE(state.set_landmarks(displacement));
+  const Points before = evaluated(state);
+  const RigidMotion turn = some_motion(2);
+  ASSERT_TRUE(state.set_landmarks(displacement + rigid_displacements(skin.landmarks + displacement, turn)));
+  const Points expected = before + rigid_displacements(before, turn);
+  EXPECT_LE(largest_difference(evaluated(state), expected), 4 * tolerance::frame_rigid * 1000);
+}
+
+TEST(Frame, ABatchGivesTheSameBitsAsFramesOneByOne) {
+  const SyntheticSkin skin = synthetic_skin(333, 6);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  for (const std::size_t count :
+       {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{5}, std::size_t{9}, std::size_t{70}}) {
+    std::vector<FrameState> states(count, FrameState(model));
+    for (FrameState& state : states) ASSERT_TRUE(state.set_landmarks(bent(skin, 0.2, 10)));
+    std::vector<float> batch(count * 999);
+    ASSERT_TRUE(evaluate_batch(states, batch));
+    std::vector<float> single(999);
+    for (std::size_t f = 0; f < count; ++f) {
+      ASSERT_TRUE(states[f].evaluate(single));
+      EXPECT_TRUE(std::equal(single.begin(), single.end(), batch.begin() + std::ptrdiff_t(999 * f))) << f;
+    }
+  }
+}
+
+TEST(Frame, RefusesLandmarksThatAreNotFiniteAndKeepsThePose) {
+  const SyntheticSkin skin = synthetic_skin(64, 4);
+  for (const FrameMode mode : {FrameMode::corotated, FrameMode::linear}) {
+    const FrameModel model(skin.rest, skin.response, skin.landmarks, mode);
+    FrameState state(model);
+    ASSERT_TRUE(state.set_landmarks(bent(skin, 0.1, 3)));
+    const Points before = evaluated(state);
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300,
+                             double{std::numeric_limits<float>::max()}}) {
+      Points displacement = bent(skin, 0.1, 3);
+      displacement(2, 1) = bad;
+      EXPECT_FALSE(state.set_landmarks(displacement)) << bad;
+      EXPECT_EQ(evaluated(state), before);
+    }
+    EXPECT_FALSE(state.set_landmarks(Points::Zero(3, 3)));
+    Points huge = Points::Constant(4, 3, 1e33);
+    huge(0, 0) = -1e33;
+    ASSERT_TRUE(state.set_landmarks(huge));
+    EXPECT_TRUE(evaluated(state).allFinite());
+  }
+}
+
+TEST(Frame, WritesNothingIntoABufferOfAnotherSize) {
+  const SyntheticSkin skin = synthetic_skin(40, 3);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  const std::vector<FrameState> states(2, FrameState(model));
+  for (const std::size_t size : {std::size_t{0}, std::size_t{119}, std::size_t{121}}) {
+    std::vector<float> positions(size, -1.0F);
+    EXPECT_FALSE(states[0].evaluate(positions));
+    EXPECT_FALSE(evaluate_batch(states, positions));
+    EXPECT_THAT(positions, testing::Each(-1.0F));
+  }
+  EXPECT_TRUE(evaluate_batch({}, {}));
+}
+
+TEST(FrameModel, WarnsOfLandmarksOnALine) {
+  SyntheticSkin skin = synthetic_skin(40, 3);
+  EXPECT_TRUE(FrameModel(skin.rest, skin.response, skin.landmarks).warnings().empty());
+  for (Index k = 0; k < 3; ++k) skin.landmarks.row(k) << 0, 0.001 * double(k * k), 100.0 * double(k);
+  EXPECT_THAT(FrameModel(skin.rest, skin.response, skin.landmarks).warnings(),
+              testing::ElementsAre(testing::HasSubstr("nearly collinear")));
+  EXPECT_TRUE(FrameModel(skin.rest, skin.response, skin.landmarks, FrameMode::linear).warnings().empty());
+}
+
+TEST(FrameModel, RefusesWhatIsNoModel) {
+  const SyntheticSkin skin = synthetic_skin(40, 3);
+  const auto refused = [&](const SyntheticSkin& bad, ErrorCode code) {
+    try {
+      const FrameModel model(bad.rest, bad.response, bad.landmarks);
+    } catch (const Error& error) {
+      return error.code() == code;
+    }
+    return false;
+  };
+  SyntheticSkin bad = skin;
+  bad.response.conservativeResize(120, 8);
+  EXPECT_TRUE(refused(bad, ErrorCode::usage));
+  bad = skin;
+  bad.rest.conservativeResize(39, 3);
+  EXPECT_TRUE(refused(bad, ErrorCode::usage));
+  EXPECT_TRUE(refused({}, ErrorCode::usage));
+  for (const double number : {std::numeric_limits<double>::quiet_NaN(), 1e39}) {
+    bad = skin;
+    bad.response(7, 5) = number;
+    EXPECT_TRUE(refused(bad, ErrorCode::bad_input));
+    bad = skin;
+    bad.rest(3, 1) = number;
+    EXPECT_TRUE(refused(bad, ErrorCode::bad_input));
+    bad = skin;
+    bad.landmarks(0, 2) = number;
+    EXPECT_TRUE(refused(bad, ErrorCode::bad_input));
+  }
+}
+
+}  // namespace
+}  // namespace skinbem
