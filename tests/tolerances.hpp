@@ -19,4 +19,9 @@ inline constexpr double frame_rigid = 1e-6;
 /// The same in double, of landmark positions that were themselves rounded.
 inline constexpr double frame_reference = 1e-12;
 
+/// What the interpolation to a finer skin promises of fields u = a + F x.
+inline constexpr double affine = 1e-10;
+/// The finer skin at a coarse vertex: ties are springs 1e4 times as stiff as the field; random values, the worst case.
+inline constexpr double interpolation_tie = 1e-3;
+
 }  // namespace skinbem::tolerance
