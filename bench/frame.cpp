@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A frame: rest position + R q, then the rigid motion, for skins of 606 to 50,000 vertices and six landmarks. Beside it
+// Eigen and OpenBLAS do the same product on the same numbers (y = x + R q; they leave out the rigid motion).
+// Counter `bytes_per_second`: R, rest position, output and the cache line that a write fetches first.
+#include <benchmark/benchmark.h>
+#include <cblas.h>
+
+#include <cstdlib>
+
+#include <skinbem/base/rigid_fit.hpp>
+#include <skinbem/frame/frame_model.hpp>
+
+namespace {
+
+using namespace skinbem;
+
+constexpr Index kLandmarks = 6;
+
+struct Skin {
+  explicit Skin(Index vertices)
+      : rest(100 * Points::Random(vertices, 3)),
+        response(0.1 * Eigen::MatrixXd::Random(3 * vertices, 3 * kLandmarks)),
+        landmarks(100 * Points::Random(kLandmarks, 3)),
+        displacements(10 * Points::Random(kLandmarks, 3)) {}
+
+  Points rest;
+  Eigen::MatrixXd response;
+  Points landmarks;
+  Points displacements;
+};
+
+void count_bytes(benchmark::State& state, Index vertices) {
+  const double bytes = 3.0 * sizeof(float) * static_cast<double>(vertices * (3 * kLandmarks + 3));
+  state.SetBytesProcessed(static_cast<std::int64_t>(bytes * static_cast<double>(state.iterations())));
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const int vertices : {606, 2000, 10000, 50000}) benchmark->Arg(vertices);
+}
+
+void rigid_fit(benchmark::State& state) {
+  const Skin skin(1);
+  for (auto _ : state) benchmark::DoNotOptimize(fit_rigid_displacement(skin.landmarks, skin.displacements));
+}
+BENCHMARK(rigid_fit);
+
+/// Everything a frame costs: new landmarks, rigid fit, product.
+void frame(benchmark::State& state) {
+  const Skin skin(state.range(0));
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  FrameState frame_state(model);
+  std::vector<float> positions(static_cast<std::size_t>(3 * model.vertex_count()));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(frame_state.set_landmarks(skin.displacements));
+    frame_state.evaluate(positions);
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, model.vertex_count());
+}
+BENCHMARK(frame)->Apply(sizes);
+
+/// One of 64 frames evaluated together; time and bytes are those of a single frame.
+void frame_of_batch(benchmark::State& state) {
+  constexpr std::size_t kFrames = 64;
+  const Skin skin(state.range(0));
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  std::vector<FrameState> frames(kFrames, FrameState(model));
+  for (FrameState& one : frames) {
+    if (!one.set_landmarks(skin.displacements + Points::Random(kLandmarks, 3))) std::abort();
+  }
+  std::vector<float> positions(kFrames * static_cast<std::size_t>(3 * model.vertex_count()));
+  while (state.KeepRunningBatch(kFrames)) {
+    evaluate_batch(frames, positions);
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, model.vertex_count());
+}
+BENCHMARK(frame_of_batch)->Apply(sizes);
+
+void eigen_gemv(benchmark::State& state) {
+  const Skin skin(state.range(0));
+  const Eigen::MatrixXf response = skin.response.cast<float>();
+  const Eigen::VectorXf rest = Eigen::Map<const Eigen::VectorXd>(skin.rest.data(), skin.rest.size()).cast<float>();
+  const Eigen::VectorXf q = Eigen::VectorXf::Random(response.cols());
+  Eigen::VectorXf positions(rest.size());
+  for (auto _ : state) {
+    positions = rest;
+    positions.noalias() += response * q;
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, skin.rest.rows());
+}
+BENCHMARK(eigen_gemv)->Apply(sizes);
+
+void openblas_sgemv(benchmark::State& state) {
+  const Skin skin(state.range(0));
+  const Eigen::MatrixXf response = skin.response.cast<float>();
+  const Eigen::VectorXf rest = Eigen::Map<const Eigen::VectorXd>(skin.rest.data(), skin.rest.size()).cast<float>();
+  const Eigen::VectorXf q = Eigen::VectorXf::Random(response.cols());
+  Eigen::VectorXf positions(rest.size());
+  openblas_set_num_threads(1);
+  for (auto _ : state) {
+    positions = rest;
+    cblas_sgemv(CblasColMajor, CblasNoTrans, static_cast<int>(response.rows()), static_cast<int>(response.cols()), 1,
+                response.data(), static_cast<int>(response.rows()), q.data(), 1, 1, positions.data(), 1);
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, skin.rest.rows());
+}
+BENCHMARK(openblas_sgemv)->Apply(sizes);
+
+/// Reads a buffer of the bytes of R of that many vertices: what the cache level or the memory can deliver.
+void read_bandwidth(benchmark::State& state) {
+  const Eigen::VectorXf buffer = Eigen::VectorXf::Random(3 * state.range(0) * 3 * kLandmarks);
+  openblas_set_num_threads(1);
+  for (auto _ : state) benchmark::DoNotOptimize(cblas_sasum(static_cast<int>(buffer.size()), buffer.data(), 1));
+  state.SetBytesProcessed(state.iterations() * buffer.size() * static_cast<std::int64_t>(sizeof(float)));
+}
+BENCHMARK(read_bandwidth)->Apply(sizes);
+
+}  // namespace
+
+BENCHMARK_MAIN();
