@@ -49,6 +49,11 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+std::string quoted(std::string_view text) {
+  std::string result(1, '\'');
+  return result.append(text).append(1, '\'');
+}
+
 std::vector<std::string_view> words(std::string_view text) {
   std::vector<std::string_view> result;
   for (std::size_t end = 0;;) {
