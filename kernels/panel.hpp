@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Many field points at once: the layout that the operator hands to a kernel, and the scalar way to integrate it.
+/// A kernel with a SIMD version overloads these two functions (kelvin_batch.hpp).
+#pragma once
+
+#include <bit>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace skinbem {
+
+/// Field points are handled in panels of this many: a multiple of every vector length.
+inline constexpr std::size_t kPanel = 16;
+
+/// Which points of a panel are meant: bit p is point p.
+using PanelMask = unsigned;
+
+/// Coordinates of a panel of field points, structure of arrays. Unused places repeat a used point.
+struct PointPanel {
+  alignas(64) double x[kPanel];
+  alignas(64) double y[kPanel];
+  alignas(64) double z[kPanel];
+
+  Eigen::Vector3d point(std::size_t p) const { return {x[p], y[p], z[p]}; }
+};
+
+/// Gauss points of one flat triangle; #count each.
+struct SourcePoints {
+  std::size_t count;
+  const double* x;
+  const double* y;
+  const double* z;
+  const double* weights[3];  ///< weight x area x hat function of each vertex
+};
+
+/// Adds int N_v T_ij dS at the points of `mask` to out[v][(components i + j) kPanel + p], v = 0, 1, 2; n is the
+/// triangle's unit normal. Each out[v] is aligned to 64 bytes.
+template <class Kernel>
+void add_double_layer(const Kernel& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
+                      const Eigen::Vector3d& n, double* const out[3]) {
+  for (; mask != 0; mask &= mask - 1) {
+    const std::size_t p = static_cast<std::size_t>(std::countr_zero(mask));
+    for (std::size_t q = 0; q < source.count; ++q) {
+      const Eigen::Vector3d r = Eigen::Vector3d(source.x[q], source.y[q], source.z[q]) - panel.point(p);
+      const typename Kernel::Block value = kernel.double_layer(r, n);
+      for (int e = 0; e < Kernel::components * Kernel::components; ++e) {
+        const double entry = value(e / Kernel::components, e % Kernel::components);
+        for (int v = 0; v < 3; ++v) out[v][e * kPanel + p] += source.weights[v][q] * entry;
+      }
+    }
+  }
+}
+
+/// Adds int (sum_v N_v) U_ij dS, the weights of the three hat functions summed, to out[(components i + j) kPanel + p].
+template <class Kernel>
+void add_single_layer(const Kernel& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
+                      double* out) {
+  for (; mask != 0; mask &= mask - 1) {
+    const std::size_t p = static_cast<std::size_t>(std::countr_zero(mask));
+    for (std::size_t q = 0; q < source.count; ++q) {
+      const Eigen::Vector3d r = Eigen::Vector3d(source.x[q], source.y[q], source.z[q]) - panel.point(p);
+      const double weight = source.weights[0][q] + source.weights[1][q] + source.weights[2][q];
+      const typename Kernel::Block value = kernel.single_layer(r) * weight;
+      for (int e = 0; e < Kernel::components * Kernel::components; ++e) {
+        out[e * kPanel + p] += value(e / Kernel::components, e % Kernel::components);
+      }
+    }
+  }
+}
+
+}  // namespace skinbem
