@@ -25,9 +25,9 @@ struct SourceTriangle {
   }
 };
 
-/// Integrates by the cheapest way that meets the tolerance: a Gauss rule where x is far, the closed form where it is near, and
-/// where neither is accurate (x near compared with the triangle's length, far compared with its height) the triangle is halved
-/// across its longest edge until one is.
+/// Integrates by the cheapest way that meets the tolerance: a Gauss rule where x is far, the closed form where it is
+/// near, and where neither is accurate (x near compared with the triangle's length, far compared with its height) the
+/// triangle is halved across its longest edge until one is.
 template <class Kernel>
 class ElementIntegral {
  public:
@@ -97,8 +97,8 @@ class ElementIntegral {
     return sum;
   }
 
-  /// With m the middle of the longest edge ij, opposite to k: on either half the hat functions of the whole are combinations of
-  /// those of the half, N_i = N'_i + N'_m / 2 and so on.
+  /// With m the middle of the longest edge ij, opposite to k: on either half the hat functions of the whole are
+  /// combinations of those of the half, N_i = N'_i + N'_m / 2 and so on.
   template <class Exact, class Value>
   Blocks halves(const SourceTriangle& t, const Eigen::Vector3d& x, const RuleLadder& ladder, int depth,
                 const Exact& exact, const Value& value) const {

@@ -16,9 +16,9 @@ struct MeasuredRule {
 
 const std::vector<MeasuredRule>& measured_rules() {
   static const std::vector<MeasuredRule> rules = {
-      {symmetric_triangle_rule(2), {0.06, 0.2}},      {symmetric_triangle_rule(4), {0.012, 0.10}},
-      {symmetric_triangle_rule(5), {0.018, 0.16}},    {symmetric_triangle_rule(7), {0.0028, 0.055}},
-      {symmetric_triangle_rule(8), {0.0040, 0.045}},  {symmetric_triangle_rule(10), {6e-4, 0.009}},
+      {symmetric_triangle_rule(2), {0.06, 0.2}},       {symmetric_triangle_rule(4), {0.012, 0.10}},
+      {symmetric_triangle_rule(5), {0.018, 0.16}},     {symmetric_triangle_rule(7), {0.0028, 0.055}},
+      {symmetric_triangle_rule(8), {0.0040, 0.045}},   {symmetric_triangle_rule(10), {6e-4, 0.009}},
       {symmetric_triangle_rule(12), {2.5e-4, 0.0035}}, {symmetric_triangle_rule(14), {2e-4, 0.004}},
       {collapsed_triangle_rule(10), {4e-6, 7e-5}},
   };

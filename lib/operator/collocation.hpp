@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Collocation of a kernel at the vertices of a mesh, with piecewise linear densities: the one place where matrix
+/// entries are made. Everything above (dense matrix, compression, landmark columns) asks for blocks of it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <skinbem/base/progress.hpp>
+#include <skinbem/kernels/kelvin.hpp>
+#include <skinbem/kernels/laplace.hpp>
+#include <skinbem/mesh/triangle_mesh.hpp>
+#include <skinbem/operator/element_integral.hpp>
+
+namespace skinbem {
+
+/// A scalar density on the surface, sum_i value_i N_i.
+struct VertexWeight {
+  std::int32_t vertex;
+  double value;
+};
+
+/// Where the work went.
+struct AssemblyCounts {
+  std::uint64_t pairs = 0;  ///< vertex-triangle pairs
+  std::uint64_t near = 0;   ///< of them, integrated in closed form (the singular ones too)
+};
+
+/// Matrices are node-major: row components k + i belongs to direction i at vertex k. Results do not depend on the
+/// number of threads.
+template <class Kernel>
+class Collocation {
+ public:
+  static constexpr int components = Kernel::components;
+
+  /// Keeps a copy of what it needs of the mesh. Throws Error(bad_input) naming the first triangle without area,
+  /// Error(usage) for bad options.
+  Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options = {});
+
+  Index node_count() const { return static_cast<Index>(vertices_.size()); }
+
+  /// The double layer's matrix H of c u + int T u dS, dense, square: off the diagonal int N_l T(x_k, .) dS, diagonal
+  /// blocks by rigid translation, so that H 1 = 0 (and free term and principal value never appear). For an exterior
+  /// problem: I - H.
+  Eigen::MatrixXd double_layer_matrix(const Progress& progress = {}, AssemblyCounts* counts = nullptr) const;
+
+  /// The rows and columns of H that belong to these vertices, written to `out`: components #rows by components
+  /// #columns. Diagonal blocks (a vertex in both lists) are left zero. One thread.
+  void double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+                          Eigen::Ref<Eigen::MatrixXd> out) const;
+
+  /// Columns of G for one density: components N by components, row block k is int U(x_k, .) density dS.
+  Eigen::MatrixXd single_layer_columns(std::span<const VertexWeight> density) const;
+
+ private:
+  struct Panel;
+  struct ColumnBlock;
+  struct Reach;
+
+  Index panel_count() const;
+  /// Calls body(k, panel, column block of the thread) for every panel of rows, on all threads.
+  template <class Body>
+  void for_each_panel(const Progress& progress, std::string_view stage, const Body& body) const;
+  std::vector<std::int32_t> triangles_around(std::span<const std::int32_t> columns) const;
+  static Reach reach(const Panel& panel, const SourceTriangle& triangle, const RuleLadder& ladder);
+  void add_triangle(const Panel& panel, Index t, ColumnBlock& block) const;
+  void add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value, ColumnBlock& block) const;
+
+  std::vector<Eigen::Vector3d> vertices_;  ///< times scale_
+  std::vector<std::array<std::int32_t, 3>> triangles_;
+  std::vector<SourceTriangle> sources_;
+  std::vector<std::int32_t> first_triangle_of_;  ///< CSR: triangles around vertex v
+  std::vector<std::int32_t> triangle_of_;
+  std::vector<std::int32_t> order_;  ///< vertices along a space-filling curve
+  double scale_;  ///< a power of two, so that scaling is exact: the kernels' batches work near unit length
+  ElementIntegral<Kernel> integral_;
+};
+
+extern template class Collocation<Kelvin<double>>;
+extern template class Collocation<Laplace<double>>;
+
+}  // namespace skinbem
