@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/response/response_model.hpp>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include <skinbem/base/rigid_fit.hpp>
+#include <skinbem/response/landmark_patch.hpp>
+#include <skinbem/solve/rigid_modes.hpp>
+
+namespace skinbem {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since the last call, or since construction.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Eigen::Map<const Points> as_points(const Eigen::Ref<const Eigen::VectorXd>& u) { return {u.data(), u.size() / 3, 3}; }
+
+}  // namespace
+
+void ResponseOptions::validate() const {
+  if (!(poisson > -1 && poisson <= 0.5)) {
+    throw Error(ErrorCode::usage, "Poisson's ratio must be greater than -1 and at most 0.5");
+  }
+  if (!(tolerance >= 1e-12 && tolerance <= 1e-1)) {
+    throw Error(ErrorCode::usage, "the tolerance must lie between 1e-12 and 0.1");
+  }
+}
+
+/// A landmark and its Green's functions.
+struct GreensFunctions {
+  Landmark landmark;
+  LandmarkPatch patch;
+  double load;        ///< norm of G_k before scaling
+  Eigen::MatrixXd X;  ///< 3N by 3
+  Eigen::MatrixXd L;  ///< 6 by 3
+};
+
+struct ResponseModel::State {
+  TriangleMesh mesh;
+  ResponseOptions options;
+  Collocation<Kelvin<double>> collocation;
+  IndexLists neighbours;
+  Eigen::VectorXd areas;
+  Eigen::MatrixXd B;
+  std::unique_ptr<NeumannSolver> solver;
+  std::vector<GreensFunctions> greens;
+  std::vector<Landmark> landmarks;
+  ResponseSummary summary;
+
+  State(const TriangleMesh& body, const ResponseOptions& given)
+      : mesh(body),
+        options(given),
+        collocation(mesh, Kelvin<double>{given.poisson, 1.0}, quadrature_for(given.tolerance)),
+        neighbours(neighbours_of_vertices(mesh)),
+        areas(vertex_areas(mesh)),
+        B(rigid_modes(mesh.vertices)) {
+    Stopwatch watch;
+    AssemblyCounts counts;
+    Eigen::MatrixXd H = collocation.double_layer_matrix(options.progress, &counts);
+    summary.near_share = double(counts.near) / double(counts.pairs);
+    summary.assemble_seconds = watch.lap();
+    report(options.progress, "factor", 0);
+    solver = make_dense_solver(std::move(H), B, options.tolerance * 1e-2);
+    summary.estimated_error = rigid_residual_to_error * solver->apply_H(B.rightCols<3>()).cwiseAbs().maxCoeff() /
+                              B.rightCols<3>().cwiseAbs().maxCoeff();
+    report(options.progress, "factor", 1);
+    summary.factor_seconds = watch.lap();
+  }
+
+  /// The error of R is at most this many times |H (w x X)| / |w x X| (measured over spheres, legs, boxes, slabs: 50 to
+  /// 1500).
+  static constexpr double rigid_residual_to_error = 2000;
+  static QuadratureOptions quadrature_for(double tolerance) { return {tolerance}; }
+
+  void check(const Landmark& landmark, Index replaced) const {
+    for (Index k = 0; k < Index(greens.size()); ++k) {
+      if (k != replaced && greens[k].landmark.vertex == landmark.vertex) {
+        throw Error(ErrorCode::bad_input, "landmarks " + greens[k].landmark.name + " and " + landmark.name +
+                                              " are both on vertex " + std::to_string(landmark.vertex) +
+                                              "; move or remove one of them");
+      }
+    }
+  }
+
+  std::vector<GreensFunctions> solve(std::span<const Landmark> wanted) {
+    Stopwatch watch;
+    std::vector<GreensFunctions> made;
+    Eigen::MatrixXd G(B.rows(), 3 * Index(wanted.size()));
+    for (const Landmark& landmark : wanted) {
+      GreensFunctions g{landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}};
+      auto columns = G.middleCols<3>(3 * Index(made.size()));
+      columns = collocation.single_layer_columns(g.patch.traction);
+      g.load = columns.norm();
+      columns /= g.load;
+      made.push_back(std::move(g));
+    }
+    SolveSummary ended;
+    report(options.progress, "solve", 0);
+    const Eigen::MatrixXd Y = solver->solve(G, &ended);
+    const Eigen::MatrixXd L = B.transpose() * Y;
+    const Eigen::MatrixXd X = Y - B * L;
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      made[k].X = X.middleCols<3>(3 * Index(k));
+      made[k].L = L.middleCols<3>(3 * Index(k));
+    }
+    report(options.progress, "solve", 1);
+    summary.iterations = std::max(summary.iterations, ended.iterations);
+    summary.residual = std::max(summary.residual, ended.residual);
+    summary.solve_seconds += watch.lap();
+    return made;
+  }
+
+  Points positions() const {
+    Points p(Index(greens.size()), 3);
+    for (Index k = 0; k < p.rows(); ++k) p.row(k) = greens[k].patch.measure(mesh.vertices).transpose();
+    return p;
+  }
+
+  void keep_names() {
+    landmarks.clear();
+    for (const GreensFunctions& g : greens) landmarks.push_back(g.landmark);
+  }
+
+  /// X and L of all landmarks side by side.
+  Eigen::MatrixXd all_X() const {
+    Eigen::MatrixXd X(B.rows(), 3 * Index(greens.size()));
+    for (std::size_t k = 0; k < greens.size(); ++k) X.middleCols<3>(3 * Index(k)) = greens[k].X;
+    return X;
+  }
+
+  /// m_k of each column of a 3N by #columns field: 3Nk by #columns.
+  Eigen::MatrixXd measure(const Eigen::MatrixXd& fields) const {
+    Eigen::MatrixXd measured(3 * Index(greens.size()), fields.cols());
+    for (Index c = 0; c < fields.cols(); ++c) {
+      for (std::size_t k = 0; k < greens.size(); ++k) {
+        measured.block<3, 1>(3 * Index(k), c) = greens[k].patch.measure(as_points(fields.col(c)));
+      }
+    }
+    return measured;
+  }
+
+  /// The solutions (t; a) of the small system for unit displacements: 3Nk + 6 by 3Nk.
+  Eigen::MatrixXd coefficients(const Eigen::MatrixXd& X) const {
+    const Index n = X.cols();
+    require_enough_landmarks();
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 6, n + 6);
+    system.topLeftCorner(n, n) = measure(X);
+    system.topRightCorner(n, 6) = measure(B);
+    for (Index k = 0; k < Index(greens.size()); ++k) system.block<6, 3>(n, 3 * k) = greens[k].L;
+    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
+    Eigen::MatrixXd solution = lu.solve(Eigen::MatrixXd::Identity(n + 6, n));
+    if (!solution.allFinite()) {
+      throw Error(ErrorCode::numerical, "the landmarks' system is singular; are two landmarks at the same place?");
+    }
+    return solution;
+  }
+
+  void require_enough_landmarks() const {
+    if (greens.size() < 3) {
+      throw Error(ErrorCode::bad_input,
+                  std::to_string(greens.size()) +
+                      " landmarks: at least three that are not on a line are needed, or the body is "
+                      "free to turn; add landmarks");
+    }
+    constexpr double on_a_line =
+        1e-6;  // ratio of the second to the first extent: the rotation's own error would be its inverse
+    if (collinear_measure(positions()) < on_a_line) {
+      throw Error(ErrorCode::bad_input,
+                  "the landmarks lie on a line, so that the body is free to turn about it; add or move a landmark");
+    }
+  }
+};
+
+ResponseModel::ResponseModel(const TriangleMesh& mesh, const ResponseOptions& options) {
+  options.validate();
+  state_ = std::make_unique<State>(mesh, options);
+}
+ResponseModel::~ResponseModel() = default;
+ResponseModel::ResponseModel(ResponseModel&&) noexcept = default;
+ResponseModel& ResponseModel::operator=(ResponseModel&&) noexcept = default;
+
+void ResponseModel::add(std::span<const Landmark> landmarks) {
+  for (std::size_t k = 0; k < landmarks.size(); ++k) {
+    state_->check(landmarks[k], -1);
+    for (std::size_t other = 0; other < k; ++other) {
+      if (landmarks[other].vertex == landmarks[k].vertex) {
+        throw Error(ErrorCode::bad_input, "landmarks " + landmarks[other].name + " and " + landmarks[k].name +
+                                              " are both on vertex " + std::to_string(landmarks[k].vertex) +
+                                              "; move or remove one of them");
+      }
+    }
+  }
+  for (GreensFunctions& g : state_->solve(landmarks)) state_->greens.push_back(std::move(g));
+  state_->keep_names();
+}
+
+void ResponseModel::move(Index k, const Landmark& landmark) {
+  if (k < 0 || k >= Index(state_->greens.size())) throw Error(ErrorCode::usage, "no landmark of that number to move");
+  state_->check(landmark, k);
+  state_->greens[k] = std::move(state_->solve(std::span(&landmark, 1)).front());
+  state_->keep_names();
+}
+
+void ResponseModel::remove(Index k) {
+  if (k < 0 || k >= Index(state_->greens.size())) throw Error(ErrorCode::usage, "no landmark of that number to remove");
+  state_->greens.erase(state_->greens.begin() + k);
+  state_->keep_names();
+}
+
+const std::vector<Landmark>& ResponseModel::landmarks() const { return state_->landmarks; }
+
+Points ResponseModel::landmark_positions() const { return state_->positions(); }
+
+Eigen::MatrixXd ResponseModel::response() const {
+  const Eigen::MatrixXd X = state_->all_X();
+  const Eigen::MatrixXd solution = state_->coefficients(X);
+  Eigen::MatrixXd R = X * solution.topRows(X.cols()) + state_->B * solution.bottomRows<6>();
+  if (!R.allFinite()) throw Error(ErrorCode::numerical, "the response is not finite; check the mesh's coordinates");
+  return R;
+}
+
+Eigen::MatrixXd ResponseModel::tractions() const {
+  const Eigen::MatrixXd X = state_->all_X();
+  Eigen::MatrixXd t = state_->coefficients(X).topRows(X.cols());
+  for (std::size_t k = 0; k < state_->greens.size(); ++k) t.middleRows<3>(3 * Index(k)) /= state_->greens[k].load;
+  return t;
+}
+
+const TriangleMesh& ResponseModel::mesh() const { return state_->mesh; }
+const ResponseSummary& ResponseModel::summary() const { return state_->summary; }
+
+}  // namespace skinbem

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// From a mesh and its landmarks to the response matrix R.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <skinbem/base/progress.hpp>
+#include <skinbem/mesh/triangle_mesh.hpp>
+#include <skinbem/response/landmark.hpp>
+#include <skinbem/solve/neumann_solver.hpp>
+
+namespace skinbem {
+
+/// What `response` needs to know beside mesh and landmarks.
+struct ResponseOptions {
+  double poisson =
+      0.45;  ///< nu in (-1, 0.5]; a body with cavities: up to 0.49. R depends on no other property of the material.
+  double tolerance =
+      1e-6;  ///< of max|R - R_d| / max|R_d|, R_d the exactly integrated P1 collocation result; 1e-12 to 1e-1
+  Progress progress;
+
+  /// Throws Error(usage) naming the value that is out of its range.
+  void validate() const;
+};
+
+/// How it went. Times in seconds.
+struct ResponseSummary {
+  double assemble_seconds = 0;
+  double factor_seconds = 0;
+  double solve_seconds = 0;
+  double near_share = 0;       ///< of vertex-triangle pairs, integrated in closed form
+  double estimated_error = 0;  ///< of R, relative; from how well H annihilates rotations and from the residual
+  double residual = 0;         ///< largest of the solves so far
+  int iterations = 0;          ///< most of the solves so far
+};
+
+/// A body whose boundary is deformed through landmarks, and everything computed about it so far: the factorised
+/// operator and each landmark's Green's functions.
+///
+/// For each landmark k with traction density G_k (three columns, scaled to norm 1), once:
+///   Y_k = (H + B B^T)^-1 G_k,  L_k = B^T Y_k,  X_k = Y_k - B L_k,
+/// and for prescribed displacements u_K, with C = m(X) and m the landmarks' measurement,
+///   [ C  m(B) ] [ t ]   [ u_K ]
+///   [ L   0   ] [ a ] = [  0  ],   u = X t + B a = R u_K.
+/// L t = 0 is the discrete condition that the load is in equilibrium. R reproduces rigid motions by construction.
+/// Equal to the mixed system [H_U, -G_K][u_U; t_K] = -H_K u_K of Tang (2010) up to rounding and amplified |H B|.
+class ResponseModel {
+ public:
+  /// Assembles and factorises. The mesh must bound a body (validate.hpp) and is copied. Throws Error.
+  ResponseModel(const TriangleMesh& mesh, const ResponseOptions& options = {});
+  ~ResponseModel();
+  ResponseModel(ResponseModel&&) noexcept;
+  ResponseModel& operator=(ResponseModel&&) noexcept;
+
+  /// Appends landmarks: three right-hand sides each, all solved together. Throws Error naming a landmark that is not on
+  /// the mesh, or on the vertex of another; nothing is added then.
+  void add(std::span<const Landmark> landmarks);
+  /// Replaces landmark k (order and count stay). Three right-hand sides. Throws like add, changing nothing.
+  void move(Index k, const Landmark& landmark);
+  /// Takes landmark k out; those behind it move up. No solve.
+  void remove(Index k);
+
+  const std::vector<Landmark>& landmarks() const;
+  /// Nk by 3: where the landmarks are at rest, p_k = m_k(X); a point landmark's vertex.
+  Points landmark_positions() const;
+
+  /// R, 3N by 3Nk: rows node-major, columns landmark-major, x, y, z. u = R u_K with u_K the landmarks' displacements.
+  /// Throws Error(bad_input) for fewer than three landmarks, or landmarks on a line.
+  Eigen::MatrixXd response() const;
+  /// 3Nk by 3Nk: the tractions t_k (at the landmark's vertex, times phi elsewhere) for unit displacements, at shear
+  /// modulus 1 and the mesh's unit of length; proportional to shear modulus / length. Throws like response.
+  Eigen::MatrixXd tractions() const;
+
+  const TriangleMesh& mesh() const;
+  const ResponseSummary& summary() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace skinbem

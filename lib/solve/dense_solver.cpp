@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <sstream>
+
+#include <skinbem/solve/lapack.hpp>
+#include <skinbem/solve/neumann_solver.hpp>
+
+namespace skinbem {
+namespace {
+
+class DenseSolver final : public NeumannSolver {
+ public:
+  DenseSolver(Eigen::MatrixXd H, const Eigen::MatrixXd& B, double tolerance)
+      : A_(std::move(H)), B_(B), tolerance_(tolerance) {
+    if (A_.rows() != A_.cols() || B_.rows() != A_.rows() || B_.cols() != 6) {
+      throw Error(ErrorCode::usage, "dense solver: H must be 3N by 3N and B 3N by 6");
+    }
+    A_.noalias() += B_ * B_.transpose();
+    single_.emplace(A_.cast<float>());
+  }
+
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary) const override {
+    SolveSummary ended;
+    Eigen::MatrixXd Y = refine(G, ended, [&](const Eigen::MatrixXd& r) {
+      return Eigen::MatrixXd(single_->solve(r.cast<float>()).cast<double>());
+    });
+    if (!(ended.residual <= tolerance_)) {
+      std::call_once(double_made_, [&] { double_.emplace(A_); });
+      Y = refine(G, ended, [&](const Eigen::MatrixXd& r) { return double_->solve(r); });
+    }
+    if (!(ended.residual <= std::max(tolerance_, 1e-9))) {
+      std::ostringstream message;
+      message << "the boundary element system is close to singular: residual " << ended.residual << " instead of "
+              << tolerance_ << "; check the mesh and Poisson's ratio";
+      throw Error(ErrorCode::numerical, message.str());
+    }
+    if (summary) *summary = ended;
+    return Y;
+  }
+
+  Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const override {
+    Eigen::MatrixXd result = -B_ * (B_.transpose() * V);
+    lapack::gemm(A_, V, 1, 1, result);
+    return result;
+  }
+
+ private:
+  /// Iterative refinement (Wilkinson): y += S (g - A y) with S an approximate inverse, until the residual meets the
+  /// tolerance or no longer falls. Each column is scaled to unit size, so that single precision does not over- or
+  /// underflow.
+  template <class Inverse>
+  Eigen::MatrixXd refine(const Eigen::MatrixXd& G, SolveSummary& ended, const Inverse& inverse) const {
+    const Eigen::RowVectorXd size = G.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
+    const Eigen::MatrixXd g = G.array().rowwise() / size.array();
+    Eigen::MatrixXd Y = inverse(g);
+    ended.residual = std::numeric_limits<double>::infinity();
+    constexpr int most_steps = 20;
+    for (ended.iterations = 0;; ++ended.iterations) {
+      Eigen::MatrixXd r = g;
+      lapack::gemm(A_, Y, -1, 1, r);
+      const double residual = r.colwise().norm().maxCoeff();
+      const bool falls = residual < 0.5 * ended.residual;
+      ended.residual = std::min(residual, ended.residual);
+      if (residual <= tolerance_ || !falls || ended.iterations == most_steps) break;
+      Y += inverse(r);
+    }
+    return Y.array().rowwise() * size.array();
+  }
+
+  Eigen::MatrixXd A_;  ///< H + B B^T
+  Eigen::MatrixXd B_;
+  double tolerance_;
+  std::optional<lapack::Lu<float>> single_;
+  mutable std::optional<lapack::Lu<double>> double_;
+  mutable std::once_flag double_made_;
+};
+
+}  // namespace
+
+std::unique_ptr<NeumannSolver> make_dense_solver(Eigen::MatrixXd H, const Eigen::MatrixXd& B, double tolerance) {
+  return std::make_unique<DenseSolver>(std::move(H), B, tolerance);
+}
+
+}  // namespace skinbem

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The small interface between the equation and the ways to solve it.
+#pragma once
+
+#include <memory>
+
+#include <skinbem/base/progress.hpp>
+#include <skinbem/base/types.hpp>
+
+namespace skinbem {
+
+/// How a solve ended.
+struct SolveSummary {
+  int iterations = 0;   ///< block iterations, or steps of refinement after a direct factorisation
+  double residual = 0;  ///< largest over the columns of |(H + B B^T) y - g| / |g|, computed, not estimated
+};
+
+/// (H + B B^T)^-1: H the double layer's matrix (3N by 3N, null space the rigid motions), B their orthonormal basis
+/// (rigid_modes). A second-kind operator, well conditioned for a solid body. Factorised or prepared by its maker, then
+/// used for any number of right-hand sides.
+class NeumannSolver {
+ public:
+  virtual ~NeumannSolver() = default;
+  /// Y (3N by #columns) with (H + B B^T) Y = G, to the tolerance it was made with. Throws Error(numerical) with the
+  /// residual that was reached where it cannot.
+  virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary = nullptr) const = 0;
+  /// H times V.
+  virtual Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const = 0;
+};
+
+/// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that
+/// does not converge, LU in double. Takes H; B is 3N by 6. Throws Error(numerical) for a singular system.
+std::unique_ptr<NeumannSolver> make_dense_solver(Eigen::MatrixXd H, const Eigen::MatrixXd& B, double tolerance);
+
+}  // namespace skinbem
