@@ -192,7 +192,6 @@ int NearSingularRule::points_on_ray(double begin, double end) const {
 }
 
 NearSingularRule::Ray NearSingularRule::ray_in_wedge(const Wedge& wedge, double v, double v_weight) const {
-  const auto& g = *triangle_;
   double s = v, ds = v_weight;
   if (wedge.scale > 0) {
     const double grow = std::exp(v), decay = 1.0 / grow;
@@ -225,7 +224,6 @@ NearSingularRule::Ray NearSingularRule::ray_in_wedge(const Wedge& wedge, double 
 }
 
 NearSingularRule::Ray NearSingularRule::ray_in_disc(double angle, double angle_weight) const {
-  const auto& g = *triangle_;
   Ray ray;
   ray.R = disc_;
   ray.direction = std::cos(angle) * tangent(disc_edge_) - std::sin(angle) * outward(disc_edge_);

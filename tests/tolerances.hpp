@@ -23,5 +23,10 @@ inline constexpr double frame_reference = 1e-12;
 inline constexpr double affine = 1e-10;
 /// The finer skin at a coarse vertex: ties are springs 1e4 times as stiff as the field; random values, the worst case.
 inline constexpr double interpolation_tie = 1e-3;
+/// Times the conditioning of an element integral (its change when v - x is rounded to double): what an algorithm of a
+/// dozen steps in double may lose.
+inline constexpr double conditioning = 30;
+/// The closed form loses digits like (distance / height)^2; here distance <= 1.8, times height^-2.
+inline constexpr double closed_form_against_gauss = 1e-11;
 
 }  // namespace skinbem::tolerance
