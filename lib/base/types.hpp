@@ -18,6 +18,9 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// #T by 3 vertex indices, counter-clockwise seen from outside the body.
 using Triangles = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// Dense matrix stored row by row.
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// A proper rigid motion x -> rotation x + translation.
 struct RigidMotion {
   Mat3 rotation = Mat3::Identity();

@@ -149,10 +149,16 @@ struct Collocation<Kernel>::ColumnBlock {
   AlignedBuffer values_;  ///< [slot][entry][point]
 };
 
+/// Which points of a panel are near a triangle, and the Gauss rule that serves the others of either half: they are
+/// neighbours.
 template <class Kernel>
 struct Collocation<Kernel>::Reach {
-  PanelMask near, far;
-  const TriangleRule* rule;
+  struct Far {
+    PanelMask mask;
+    const TriangleRule* rule;
+  };
+  PanelMask near = 0;
+  Far far[2];
 };
 
 template <class Kernel>
@@ -229,22 +235,31 @@ std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const 
   return found;
 }
 
-/// Which points of a panel are near a triangle, and the Gauss rule that serves all the others: they are neighbours.
 template <class Kernel>
 typename Collocation<Kernel>::Reach Collocation<Kernel>::reach(const Panel& panel, const SourceTriangle& triangle,
                                                                const RuleLadder& ladder) {
   alignas(64) double distance2[kPanel];
   panel.distances2(triangle.centroid, distance2);
-  PanelMask near = 0;
-  double closest = std::numeric_limits<double>::infinity();
   const double limit = ladder.near_ratio2() * triangle.radius2;
-  for (std::size_t p = 0; p < kPanel; ++p) {
-    const bool is_near = distance2[p] < limit;
-    near |= PanelMask(is_near) << p;
-    closest = is_near ? closest : std::min(closest, distance2[p]);
-  }
   const PanelMask used = panel.mask();
-  return {near & used, ~near & used, ladder.rule(closest / triangle.radius2)};
+  Reach split;
+  for (std::size_t half = 0; half < 2; ++half) {
+    PanelMask near = 0;
+    double closest = std::numeric_limits<double>::infinity();
+    for (std::size_t p = half * kPanel / 2; p < (half + 1) * kPanel / 2; ++p) {
+      const bool is_near = distance2[p] < limit;
+      near |= PanelMask(is_near) << p;
+      closest = is_near ? closest : std::min(closest, distance2[p]);
+    }
+    constexpr PanelMask half_mask = (1u << kPanel / 2) - 1u;
+    split.near |= near & used;
+    split.far[half] = {~near & used & half_mask << half * kPanel / 2, ladder.rule(closest / triangle.radius2)};
+  }
+  if (split.far[0].rule == split.far[1].rule) {
+    split.far[0].mask |= split.far[1].mask;
+    split.far[1].mask = 0;
+  }
+  return split;
 }
 
 template <class Kernel>
@@ -256,9 +271,10 @@ void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, ColumnBlock&
   block.counts.pairs += panel.count;
   block.counts.near += static_cast<unsigned>(std::popcount(split.near));
 
-  if (split.far != 0) {
-    const SourcePoints points = block.gauss.make(triangle.geometry, *split.rule, {1, 1, 1});
-    add_double_layer(integral_.kernel(), panel.points, split.far, points, triangle.geometry.normal, out);
+  for (const auto& far : split.far) {
+    if (far.mask == 0) continue;
+    const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, {1, 1, 1});
+    add_double_layer(integral_.kernel(), panel.points, far.mask, points, triangle.geometry.normal, out);
   }
   for (PanelMask near = split.near; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
@@ -276,9 +292,10 @@ void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const
   const auto& v = triangles_[t];
   const Eigen::Vector3d density(value[v[0]], value[v[1]], value[v[2]]);
   const Reach split = reach(panel, triangle, integral_.single_layer_rules());
-  if (split.far != 0) {
-    const SourcePoints points = block.gauss.make(triangle.geometry, *split.rule, density);
-    add_single_layer(integral_.kernel(), panel.points, split.far, points, block.slot(0));
+  for (const auto& far : split.far) {
+    if (far.mask == 0) continue;
+    const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, density);
+    add_single_layer(integral_.kernel(), panel.points, far.mask, points, block.slot(0));
   }
   for (PanelMask near = split.near; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
@@ -288,10 +305,34 @@ void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const
   }
 }
 
+/// The rows of a panel, all columns, and their diagonal blocks by rigid translation. Some columns at a time, so that
+/// what is read stays in the first-level cache and what is written fills whole cache lines.
 template <class Kernel>
-Eigen::MatrixXd Collocation<Kernel>::double_layer_matrix(const Progress& progress, AssemblyCounts* counts) const {
+void Collocation<Kernel>::store_rows(const Panel& panel, ColumnBlock& block, RowMajorMatrix& H) const {
+  constexpr Index stretch = 8;
   const Index n = node_count();
-  Eigen::MatrixXd H(components * n, components * n);
+  std::array<typename Kernel::Block, kPanel> sums;
+  sums.fill(Kernel::Block::Zero());
+  for (Index first = 0; first < n; first += stretch) {
+    for (std::size_t p = 0; p < panel.count; ++p) {
+      const Index row = components * Index(panel.vertex[p]);
+      for (Index column = first; column < std::min(n, first + stretch); ++column) {
+        const typename Kernel::Block entry = block.entry(column, p);
+        H.template block<components, components>(row, components * column) = entry;
+        sums[p] += entry;
+      }
+    }
+  }
+  for (std::size_t p = 0; p < panel.count; ++p) {
+    const Index row = components * Index(panel.vertex[p]);
+    H.template block<components, components>(row, row) = -sums[p];  // add_triangle left the block zero
+  }
+}
+
+template <class Kernel>
+RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress, AssemblyCounts* counts) const {
+  const Index n = node_count();
+  RowMajorMatrix H(components * n, components * n);
   std::vector<std::int32_t> slots(n);
   std::iota(slots.begin(), slots.end(), 0);
   std::vector<AssemblyCounts> counted(panel_count());
@@ -300,17 +341,7 @@ Eigen::MatrixXd Collocation<Kernel>::double_layer_matrix(const Progress& progres
     block.prepare(slots, n);
     for (Index t = 0; t < Index(triangles_.size()); ++t) add_triangle(panel, t, block);
     counted[k] = block.counts;
-    for (std::size_t p = 0; p < panel.count; ++p) {
-      const Index row = components * Index(panel.vertex[p]);
-      typename Kernel::Block sum = Kernel::Block::Zero();
-      for (Index column = 0; column < n; ++column) {
-        if (column == panel.vertex[p]) continue;
-        const typename Kernel::Block entry = block.entry(column, p);
-        H.template block<components, components>(row, components * column) = entry;
-        sum += entry;
-      }
-      H.template block<components, components>(row, row) = -sum;
-    }
+    store_rows(panel, block, H);
   });
   if (counts) {
     for (const AssemblyCounts& c : counted) {

@@ -43,7 +43,7 @@ class Collocation {
   /// The double layer's matrix H of c u + int T u dS, dense, square: off the diagonal int N_l T(x_k, .) dS, diagonal
   /// blocks by rigid translation, so that H 1 = 0 (and free term and principal value never appear). For an exterior
   /// problem: I - H.
-  Eigen::MatrixXd double_layer_matrix(const Progress& progress = {}, AssemblyCounts* counts = nullptr) const;
+  RowMajorMatrix double_layer_matrix(const Progress& progress = {}, AssemblyCounts* counts = nullptr) const;
 
   /// The rows and columns of H that belong to these vertices, written to `out`: components #rows by components
   /// #columns. Diagonal blocks (a vertex in both lists) are left zero. One thread.
@@ -65,6 +65,7 @@ class Collocation {
   std::vector<std::int32_t> triangles_around(std::span<const std::int32_t> columns) const;
   static Reach reach(const Panel& panel, const SourceTriangle& triangle, const RuleLadder& ladder);
   void add_triangle(const Panel& panel, Index t, ColumnBlock& block) const;
+  void store_rows(const Panel& panel, ColumnBlock& block, RowMajorMatrix& H) const;
   void add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value, ColumnBlock& block) const;
 
   std::vector<Eigen::Vector3d> vertices_;  ///< times scale_

@@ -71,7 +71,7 @@ struct ResponseModel::State {
         B(rigid_modes(mesh.vertices)) {
     Stopwatch watch;
     AssemblyCounts counts;
-    Eigen::MatrixXd H = collocation.double_layer_matrix(options.progress, &counts);
+    RowMajorMatrix H = collocation.double_layer_matrix(options.progress, &counts);
     summary.near_share = double(counts.near) / double(counts.pairs);
     summary.assemble_seconds = watch.lap();
     report(options.progress, "factor", 0);

@@ -12,7 +12,7 @@ namespace {
 
 class DenseSolver final : public NeumannSolver {
  public:
-  DenseSolver(Eigen::MatrixXd H, const Eigen::MatrixXd& B, double tolerance)
+  DenseSolver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance)
       : A_(std::move(H)), B_(B), tolerance_(tolerance) {
     if (A_.rows() != A_.cols() || B_.rows() != A_.rows() || B_.cols() != 6) {
       throw Error(ErrorCode::usage, "dense solver: H must be 3N by 3N and B 3N by 6");
@@ -69,7 +69,7 @@ class DenseSolver final : public NeumannSolver {
     return Y.array().rowwise() * size.array();
   }
 
-  Eigen::MatrixXd A_;  ///< H + B B^T
+  RowMajorMatrix A_;  ///< H + B B^T
   Eigen::MatrixXd B_;
   double tolerance_;
   std::optional<lapack::Lu<float>> single_;
@@ -79,7 +79,7 @@ class DenseSolver final : public NeumannSolver {
 
 }  // namespace
 
-std::unique_ptr<NeumannSolver> make_dense_solver(Eigen::MatrixXd H, const Eigen::MatrixXd& B, double tolerance) {
+std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance) {
   return std::make_unique<DenseSolver>(std::move(H), B, tolerance);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <skinbem/base/error.hpp>
+#include <skinbem/base/types.hpp>
 
 extern "C" {
 void sgetrf_(const int* m, const int* n, float* a, const int* lda, int* pivots, int* info);
@@ -34,21 +35,22 @@ inline int getrf(const int* n, double* a, int* pivots) {
 }
 inline void getrs(const int* n, const int* columns, const float* a, const int* pivots, float* b) {
   int info = 0;
-  sgetrs_("N", n, columns, a, n, pivots, b, n, &info);
+  sgetrs_("T", n, columns, a, n, pivots, b, n, &info);
 }
 inline void getrs(const int* n, const int* columns, const double* a, const int* pivots, double* b) {
   int info = 0;
-  dgetrs_("N", n, columns, a, n, pivots, b, n, &info);
+  dgetrs_("T", n, columns, a, n, pivots, b, n, &info);
 }
 
-/// LU with partial pivoting of a square matrix.
+/// LU with partial pivoting of a square matrix stored by rows (LAPACK factorises what it sees as the transpose).
 template <class T>
 class Lu {
  public:
   using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /// Throws Error(numerical) when a pivot is exactly zero.
-  explicit Lu(Matrix A) : A_(std::move(A)), pivots_(static_cast<std::size_t>(A_.rows())) {
+  explicit Lu(RowMajor A) : A_(std::move(A)), pivots_(static_cast<std::size_t>(A_.rows())) {
     const int n = static_cast<int>(A_.rows());
     if (getrf(&n, A_.data(), pivots_.data()) != 0) {
       throw Error(ErrorCode::numerical, "the boundary element matrix is singular; check the mesh and Poisson's ratio");
@@ -61,14 +63,14 @@ class Lu {
   }
 
  private:
-  Matrix A_;
+  RowMajor A_;
   std::vector<int> pivots_;
 };
 
-/// C = alpha A B + beta C.
-inline void gemm(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double alpha, double beta, Eigen::MatrixXd& C) {
+/// C = alpha A B + beta C, A stored by rows.
+inline void gemm(const RowMajorMatrix& A, const Eigen::MatrixXd& B, double alpha, double beta, Eigen::MatrixXd& C) {
   const int m = static_cast<int>(A.rows()), n = static_cast<int>(B.cols()), k = static_cast<int>(A.cols());
-  dgemm_("N", "N", &m, &n, &k, &alpha, A.data(), &m, B.data(), &k, &beta, C.data(), &m);
+  dgemm_("T", "N", &m, &n, &k, &alpha, A.data(), &k, B.data(), &k, &beta, C.data(), &m);
 }
 
 }  // namespace skinbem::lapack

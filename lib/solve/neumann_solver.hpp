@@ -31,6 +31,6 @@ class NeumannSolver {
 
 /// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that
 /// does not converge, LU in double. Takes H; B is 3N by 6. Throws Error(numerical) for a singular system.
-std::unique_ptr<NeumannSolver> make_dense_solver(Eigen::MatrixXd H, const Eigen::MatrixXd& B, double tolerance);
+std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance);
 
 }  // namespace skinbem
