@@ -29,4 +29,9 @@ inline constexpr double conditioning = 30;
 /// The closed form loses digits like (distance / height)^2; here distance <= 1.8, times height^-2.
 inline constexpr double closed_form_against_gauss = 1e-11;
 
+/// A mean or deviation of 20000 draws of deviation 1: six standard errors of a mean.
+inline constexpr double sampling = 0.043;
+/// A motion by rig and file: rotations from angles and cross products, then points a few units away, in units of their size.
+inline constexpr double motion = 1e-12;
+
 }  // namespace skinbem::tolerance
