@@ -57,9 +57,7 @@ TEST(Artefact, HasTheMeanAndDeviationThatWereAsked) {
 }
 
 TEST(Artefact, OfATrialIsConstantAndOfAFrameIsNot) {
-  const auto length = [](ArtefactKind kind, Index frame) {
-    return artefact_length(options(kind), 1, frame, 0.5);
-  };
+  const auto length = [](ArtefactKind kind, Index frame) { return artefact_length(options(kind), 1, frame, 0.5); };
   EXPECT_EQ(length(ArtefactKind::trial, 0), length(ArtefactKind::trial, 90));
   EXPECT_NE(length(ArtefactKind::frame, 0), length(ArtefactKind::frame, 1));
   EXPECT_EQ(length(ArtefactKind::none, 0), 0);
