@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The bodies of Collocation's members. Include it in one source file to use Collocation with a kernel of your own;
+/// those of the library are compiled in collocation.cpp.
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <numeric>
+
+#include <skinbem/kernels/kelvin_batch.hpp>
+#include <skinbem/operator/collocation.hpp>
+
+namespace skinbem {
+namespace detail {
+
+/// A panel's columns: for each vertex components^2 entries of kPanel points, aligned for the batches.
+struct AlignedBuffer {
+  std::vector<double> storage;
+  double* data = nullptr;
+
+  void zero(std::size_t size) {
+    storage.assign(size + 8, 0.0);
+    const auto address = reinterpret_cast<std::uintptr_t>(storage.data());
+    data = storage.data() + (64 - address % 64) % 64 / sizeof(double);
+  }
+};
+
+/// Gauss points of one triangle for one rule, in the layout of the batches.
+class GaussPoints {
+ public:
+  /// `density` scales the three hat functions.
+  SourcePoints make(const TriangleGeometry<double>& g, const TriangleRule& rule, const Eigen::Vector3d& density) {
+    const std::size_t n = static_cast<std::size_t>(rule.size());
+    storage_.resize(6 * n);
+    double* p[6];
+    for (std::size_t k = 0; k < 6; ++k) p[k] = storage_.data() + k * n;
+    for (std::size_t q = 0; q < n; ++q) {
+      const Eigen::Vector3d b = rule.barycentric.col(q);
+      const double weight = rule.weights[q] * g.twice_area / 2;
+      for (int k = 0; k < 3; ++k) {
+        p[k][q] = b[0] * g.vertices[0][k] + b[1] * g.vertices[1][k] + b[2] * g.vertices[2][k];
+        p[3 + k][q] = b[k] * weight * density[k];
+      }
+    }
+    return {n, p[0], p[1], p[2], {p[3], p[4], p[5]}};
+  }
+
+ private:
+  std::vector<double> storage_;
+};
+
+/// Spreads the low 21 bits of v to every third bit.
+inline std::uint64_t spread_bits(std::uint64_t v) {
+  v = (v | v << 32) & 0x1f00000000ffffull;
+  v = (v | v << 16) & 0x1f0000ff0000ffull;
+  v = (v | v << 8) & 0x100f00f00f00f00full;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ull;
+  return (v | v << 2) & 0x1249249249249249ull;
+}
+
+/// Indices of the points along Morton's curve: neighbours in it are neighbours in space, so a panel's points are close.
+inline std::vector<std::int32_t> morton_order(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d low = points.front(), high = points.front();
+  for (const auto& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double cells = 2097151 / std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
+  std::vector<std::uint64_t> code(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d cell = (points[i] - low) * cells;
+    code[i] = spread_bits(static_cast<std::uint64_t>(cell[0])) | spread_bits(static_cast<std::uint64_t>(cell[1])) << 1 |
+              spread_bits(static_cast<std::uint64_t>(cell[2])) << 2;
+  }
+  std::vector<std::int32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return code[a] < code[b]; });
+  return order;
+}
+
+inline double power_of_two_scale(const TriangleMesh& mesh) { return std::exp2(-std::ceil(std::log2(diagonal(mesh)))); }
+
+template <class Block>
+void add_block(const Block& block, double* out) {
+  for (Eigen::Index e = 0; e < Block::SizeAtCompileTime; ++e) {
+    out[e * Eigen::Index(kPanel)] += block(e / Block::ColsAtCompileTime, e % Block::ColsAtCompileTime);
+  }
+}
+
+}  // namespace detail
+
+/// Up to kPanel field points.
+template <class Kernel>
+struct Collocation<Kernel>::Panel {
+  PointPanel points;
+  std::int32_t vertex[kPanel];
+  std::size_t count;
+
+  Panel(const std::vector<Eigen::Vector3d>& vertices, std::span<const std::int32_t> rows) : count(rows.size()) {
+    for (std::size_t p = 0; p < kPanel; ++p) {
+      vertex[p] = rows[std::min(p, count - 1)];
+      points.x[p] = vertices[vertex[p]][0];
+      points.y[p] = vertices[vertex[p]][1];
+      points.z[p] = vertices[vertex[p]][2];
+    }
+  }
+  PanelMask mask() const { return (1u << count) - 1u; }
+
+  /// Squared distances to a centre.
+  void distances2(const Eigen::Vector3d& centre, double out[kPanel]) const {
+    for (std::size_t p = 0; p < kPanel; ++p) {
+      const double dx = points.x[p] - centre[0], dy = points.y[p] - centre[1], dz = points.z[p] - centre[2];
+      out[p] = dx * dx + dy * dy + dz * dz;
+    }
+  }
+};
+
+/// The entries of one panel of rows in the columns asked for, and scratch space of the thread that makes them.
+template <class Kernel>
+struct Collocation<Kernel>::ColumnBlock {
+  static constexpr std::size_t entries = components * components;
+  detail::GaussPoints gauss;
+  AssemblyCounts counts;
+
+  /// `slot_of` is by vertex, -1 for those that are not asked for.
+  void prepare(std::span<const std::int32_t> slot_of, std::size_t slots) {
+    slot_of_ = slot_of;
+    slots_ = slots;
+    counts = {};
+    values_.zero((slots + 1) * entries * kPanel);  // one more slot takes what is not asked for
+  }
+  double* slot(std::size_t k) { return values_.data + k * entries * kPanel; }
+  double* at(std::int32_t vertex) {
+    const std::int32_t k = slot_of_[vertex];
+    return slot(k < 0 ? slots_ : static_cast<std::size_t>(k));
+  }
+  typename Kernel::Block entry(std::size_t k, std::size_t p) {
+    typename Kernel::Block block;
+    for (int e = 0; e < int(entries); ++e) block(e / components, e % components) = slot(k)[e * kPanel + p];
+    return block;
+  }
+
+ private:
+  std::span<const std::int32_t> slot_of_;
+  std::size_t slots_ = 0;
+  detail::AlignedBuffer values_;  ///< [slot][entry][point]
+};
+
+/// Which points of a panel are near a triangle, and the Gauss rule that serves the others of either half: they are
+/// neighbours.
+template <class Kernel>
+struct Collocation<Kernel>::Reach {
+  struct Far {
+    PanelMask mask;
+    const TriangleRule* rule;
+  };
+  PanelMask near = 0;
+  Far far[2];
+};
+
+template <class Kernel>
+Index Collocation<Kernel>::panel_count() const {
+  return (node_count() + Index(kPanel) - 1) / Index(kPanel);
+}
+
+template <class Kernel>
+template <class Body>
+void Collocation<Kernel>::for_each_panel(const Progress& progress, std::string_view stage, const Body& body) const {
+  std::exception_ptr failure;
+  std::atomic<bool> failed = false;
+  std::atomic<Index> done = 0;
+  const Index panels = panel_count();
+#pragma omp parallel
+  {
+    ColumnBlock block;
+#pragma omp for schedule(dynamic, 1)
+    for (Index k = 0; k < panels; ++k) {
+      if (failed) continue;
+      try {
+        const Index first = k * Index(kPanel);
+        const Index count = std::min(Index(kPanel), node_count() - first);
+        body(k, Panel(vertices_, std::span(order_).subspan(first, count)), block);
+        const Index finished = ++done;
+        if (omp_get_thread_num() == 0) report(progress, stage, double(finished) / double(panels));
+      } catch (...) {
+#pragma omp critical(skinbem_collocation_failure)
+        if (!failed.exchange(true)) failure = std::current_exception();
+      }
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+template <class Kernel>
+Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options)
+    : scale_(detail::power_of_two_scale(mesh)), integral_(kernel, options.tolerance) {
+  vertices_.resize(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;
+  triangles_.resize(mesh.triangle_count());
+  sources_.reserve(mesh.triangle_count());
+  first_triangle_of_.assign(vertices_.size() + 1, 0);
+  for (Index t = 0; t < mesh.triangle_count(); ++t) {
+    if (!(area_vector(mesh, t).norm() > 0)) {
+      throw Error(ErrorCode::bad_input,
+                  "triangle " + std::to_string(t) + " has no area; remove it and its vertices' duplicates");
+    }
+    for (int c = 0; c < 3; ++c) {
+      triangles_[t][c] = mesh.triangles(t, c);
+      ++first_triangle_of_[mesh.triangles(t, c) + 1];
+    }
+    const auto& v = triangles_[t];
+    sources_.emplace_back(vertices_[v[0]], vertices_[v[1]], vertices_[v[2]]);
+  }
+  std::partial_sum(first_triangle_of_.begin(), first_triangle_of_.end(), first_triangle_of_.begin());
+  triangle_of_.resize(3 * triangles_.size());
+  std::vector<std::int32_t> next(first_triangle_of_.begin(), first_triangle_of_.end() - 1);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (const std::int32_t v : triangles_[t]) triangle_of_[next[v]++] = static_cast<std::int32_t>(t);
+  }
+  order_ = detail::morton_order(vertices_);
+}
+
+template <class Kernel>
+std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const std::int32_t> columns) const {
+  std::vector<std::int32_t> found;
+  for (const std::int32_t v : columns) {
+    found.insert(found.end(), triangle_of_.begin() + first_triangle_of_[v],
+                 triangle_of_.begin() + first_triangle_of_[v + 1]);
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+template <class Kernel>
+typename Collocation<Kernel>::Reach Collocation<Kernel>::reach(const Panel& panel, const SourceTriangle& triangle,
+                                                               const RuleLadder& ladder) {
+  alignas(64) double distance2[kPanel];
+  panel.distances2(triangle.centroid, distance2);
+  const double limit = ladder.near_ratio2() * triangle.radius2;
+  const PanelMask used = panel.mask();
+  Reach split;
+  for (std::size_t half = 0; half < 2; ++half) {
+    PanelMask near = 0;
+    double closest = std::numeric_limits<double>::infinity();
+    for (std::size_t p = half * kPanel / 2; p < (half + 1) * kPanel / 2; ++p) {
+      const bool is_near = distance2[p] < limit;
+      near |= PanelMask(is_near) << p;
+      closest = is_near ? closest : std::min(closest, distance2[p]);
+    }
+    constexpr PanelMask half_mask = (1u << kPanel / 2) - 1u;
+    split.near |= near & used;
+    split.far[half] = {~near & used & half_mask << half * kPanel / 2, ladder.rule(closest / triangle.radius2)};
+  }
+  if (split.far[0].rule == split.far[1].rule) {
+    split.far[0].mask |= split.far[1].mask;
+    split.far[1].mask = 0;
+  }
+  return split;
+}
+
+template <class Kernel>
+void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, ColumnBlock& block) const {
+  const SourceTriangle& triangle = sources_[t];
+  const auto& v = triangles_[t];
+  double* const out[3] = {block.at(v[0]), block.at(v[1]), block.at(v[2])};
+  const Reach split = reach(panel, triangle, integral_.double_layer_rules());
+  block.counts.pairs += panel.count;
+  block.counts.near += static_cast<unsigned>(std::popcount(split.near));
+
+  for (const auto& far : split.far) {
+    if (far.mask == 0) continue;
+    const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, {1, 1, 1});
+    add_double_layer(integral_.kernel(), panel.points, far.mask, points, triangle.geometry.normal, out);
+  }
+  for (PanelMask near = split.near; near != 0; near &= near - 1) {
+    const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
+    const auto blocks = integral_.double_layer(triangle, panel.points.point(p));
+    for (int c = 0; c < 3; ++c) {
+      if (v[c] != panel.vertex[p])
+        detail::add_block(blocks[c], out[c] + p);  // the diagonal comes from rigid translation
+    }
+  }
+}
+
+template <class Kernel>
+void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value,
+                                              ColumnBlock& block) const {
+  const SourceTriangle& triangle = sources_[t];
+  const auto& v = triangles_[t];
+  const Eigen::Vector3d density(value[v[0]], value[v[1]], value[v[2]]);
+  const Reach split = reach(panel, triangle, integral_.single_layer_rules());
+  for (const auto& far : split.far) {
+    if (far.mask == 0) continue;
+    const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, density);
+    add_single_layer(integral_.kernel(), panel.points, far.mask, points, block.slot(0));
+  }
+  for (PanelMask near = split.near; near != 0; near &= near - 1) {
+    const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
+    const auto blocks = integral_.single_layer(triangle, panel.points.point(p));
+    const typename Kernel::Block sum = blocks[0] * density[0] + blocks[1] * density[1] + blocks[2] * density[2];
+    detail::add_block(sum, block.slot(0) + p);
+  }
+}
+
+/// The rows of a panel, all columns, and their diagonal blocks by rigid translation. Some columns at a time, so that
+/// what is read stays in the first-level cache and what is written fills whole cache lines.
+template <class Kernel>
+void Collocation<Kernel>::store_rows(const Panel& panel, ColumnBlock& block, RowMajorMatrix& H) const {
+  constexpr Index stretch = 8;
+  const Index n = node_count();
+  std::array<typename Kernel::Block, kPanel> sums;
+  sums.fill(Kernel::Block::Zero());
+  for (Index first = 0; first < n; first += stretch) {
+    for (std::size_t p = 0; p < panel.count; ++p) {
+      const Index row = components * Index(panel.vertex[p]);
+      for (Index column = first; column < std::min(n, first + stretch); ++column) {
+        const typename Kernel::Block entry = block.entry(column, p);
+        H.template block<components, components>(row, components * column) = entry;
+        sums[p] += entry;
+      }
+    }
+  }
+  for (std::size_t p = 0; p < panel.count; ++p) {
+    const Index row = components * Index(panel.vertex[p]);
+    H.template block<components, components>(row, row) = -sums[p];  // add_triangle left the block zero
+  }
+}
+
+template <class Kernel>
+RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress, AssemblyCounts* counts) const {
+  const Index n = node_count();
+  RowMajorMatrix H(components * n, components * n);
+  std::vector<std::int32_t> slots(n);
+  std::iota(slots.begin(), slots.end(), 0);
+  std::vector<AssemblyCounts> counted(panel_count());
+
+  for_each_panel(progress, "assemble", [&](Index k, const Panel& panel, ColumnBlock& block) {
+    block.prepare(slots, n);
+    for (Index t = 0; t < Index(triangles_.size()); ++t) add_triangle(panel, t, block);
+    counted[k] = block.counts;
+    store_rows(panel, block, H);
+  });
+  if (counts) {
+    for (const AssemblyCounts& c : counted) {
+      counts->pairs += c.pairs;
+      counts->near += c.near;
+    }
+  }
+  return H;
+}
+
+template <class Kernel>
+void Collocation<Kernel>::double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+                                             Eigen::Ref<Eigen::MatrixXd> out) const {
+  thread_local std::vector<std::int32_t> slots;
+  thread_local ColumnBlock block;
+  slots.resize(vertices_.size(), -1);
+  for (std::size_t c = 0; c < columns.size(); ++c) slots[columns[c]] = static_cast<std::int32_t>(c);
+  const std::vector<std::int32_t> triangles = triangles_around(columns);
+
+  for (std::size_t first = 0; first < rows.size(); first += kPanel) {
+    const Panel panel(vertices_, rows.subspan(first, std::min(kPanel, rows.size() - first)));
+    block.prepare(slots, columns.size());
+    for (const std::int32_t t : triangles) add_triangle(panel, t, block);
+    for (std::size_t p = 0; p < panel.count; ++p) {
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        out.template block<components, components>(components * Index(first + p), components * Index(c)) =
+            block.entry(c, p);
+      }
+    }
+  }
+  for (const std::int32_t v : columns) slots[v] = -1;
+}
+
+template <class Kernel>
+Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const VertexWeight> density) const {
+  std::vector<std::int32_t> support;
+  std::vector<double> value(vertices_.size(), 0.0);
+  for (const VertexWeight& d : density) {
+    support.push_back(d.vertex);
+    value[d.vertex] += d.value;
+  }
+  const std::vector<std::int32_t> triangles = triangles_around(support);
+  Eigen::MatrixXd G(components * node_count(), components);
+  for_each_panel({}, "", [&](Index, const Panel& panel, ColumnBlock& block) {
+    block.prepare({}, 0);
+    for (const std::int32_t t : triangles) add_single_layer_of(panel, t, value, block);
+    for (std::size_t p = 0; p < panel.count; ++p) {
+      G.template block<components, components>(components * Index(panel.vertex[p]), 0) = block.entry(0, p) / scale_;
+    }
+  });
+  return G;
+}
+
+}  // namespace skinbem
