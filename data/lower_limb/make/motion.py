@@ -149,7 +149,7 @@ def jump(skin_v):
     """Columns as in walk()."""
     speed = sqrt(2 * GRAVITY * JUMP_HEIGHT)
     stand = HIP_HEIGHT - 1.2  # the knee is never quite straight
-    leave = stand + 52.0
+    leave = stand + 68.0
     land = stand + 10.0
     down = sqrt(2 * GRAVITY * (leave + JUMP_HEIGHT - land))
     touch = TAKE_OFF + (speed + down) / GRAVITY

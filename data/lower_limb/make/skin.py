@@ -18,13 +18,13 @@ LEG = [
     (450, 0, 2, 54.5, 54, 50, 54),
     (425, -1, 4, 52, 52.5, 47, 56),
     (395, -1, 8, 54.5, 55, 46, 62),
-    (355, 0, 11, 59.5, 58, 46.5, 67),
+    (355, 0, 11, 60.3, 58.8, 47, 67.6),
     (315, 0, 11, 57.5, 55.5, 44, 64),
     (275, 0, 10, 50, 50, 39, 55),
     (235, 0, 9, 43, 44, 35, 46),
     (195, 0, 8, 36.5, 38.5, 31, 38),
     (155, 0, 7, 33, 34.5, 28.5, 36),
-    (125, 0, 5, 32.5, 34, 27.5, 37),
+    (125, 0, 5, 33.4, 34.9, 28.3, 37.6),
     (100, 0, 3, 32, 32.5, 26, 38),
     (80, 0, 2, 30, 31, 25, 38),
     (60, 0, 0, 26, 27, 24, 38),
@@ -37,7 +37,7 @@ def shank():
     between = cone((0, 84, 420), (0, 84, 300), 6, 4)
     achilles = tube([(1, 50, 290), (1, 47.5, 245), (0, 44.5, 195), (-1, 42, 140), (-2, 42.5, 95), (-3, 46, 60)],
                     [10, 10, 9, 8.4, 8.6, 11], 5)
-    patella = ellipsoid((1, -45, 474), (26, 19, 28))
+    patella = ellipsoid((1, -45.5, 474), (25, 20, 27))
     tendon = tube([(0, -44, 450), (-1, -36, 415), (0, -27, 370)], [13, 12.5, 12], 4)
     above = ellipsoid((17, -34, 520), (30, 28, 42))  # vastus medialis
     hollows = [ellipsoid((29, -62, 446), (11, 14, 18)), ellipsoid((-29, -62, 446), (11, 14, 18)), between,
@@ -106,10 +106,10 @@ def skin(body):
 
 
 def wanted_edge(points):
-    """Edge length wanted at points: 8 mm at the toes, 15 at the foot, 29 at the shank."""
-    y, z = points[:, 1], points[:, 2]
-    toe_part = np.clip((-118.0 - y) / 25.0, 0.0, 1.0)
-    toe_part = toe_part * toe_part * (3 - 2 * toe_part)
-    up = np.clip((z - 75.0) / 110.0, 0.0, 1.0)
-    up = up * up * (3 - 2 * up)
-    return (15.0 - 6.7 * toe_part) * (1 - up) + 28.0 * up
+    """Edge length wanted at points: 7.5 mm at the toes, 15 at the foot, 29 at the shank, 20 around the kneecap."""
+    x, y, z = points[:, 0], points[:, 1], points[:, 2]
+    ease = lambda s: s * s * (3 - 2 * s)
+    toe_part = ease(np.clip((-118.0 - y) / 25.0, 0.0, 1.0))
+    up = ease(np.clip((z - 75.0) / 110.0, 0.0, 1.0))
+    knee = ease(np.clip(1.6 - np.sqrt(x * x + (y + 55.0) * (y + 55.0) + (z - 472.0) * (z - 472.0)) / 50.0, 0.0, 1.0))
+    return (15.0 - 7.5 * toe_part) * (1 - up) + (29.0 - 9.0 * knee) * up
