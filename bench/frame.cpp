@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A frame: rest position + R q, then the rigid motion, for skins of 606 to 50,000 vertices and six landmarks. Beside it
 // Eigen and OpenBLAS do the same product on the same numbers (y = x + R q; they leave out the rigid motion).
+// With --quick, --report or --json FILE: percentiles and ratios, see frame_report.hpp.
 // Counter `bytes_per_second`: R, rest position, output and the cache line that a write fetches first.
 #include <benchmark/benchmark.h>
 #include <cblas.h>
 
+#include <cstdio>
 #include <cstdlib>
+#include <string>
 
+#include <skinbem/base/error.hpp>
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/frame/frame_model.hpp>
+
+#include "frame_report.hpp"
+#include "read_bandwidth.hpp"
 
 namespace {
 
@@ -111,13 +118,41 @@ BENCHMARK(openblas_sgemv)->Apply(sizes);
 
 /// Reads a buffer of the bytes of R of that many vertices: what the cache level or the memory can deliver.
 void read_bandwidth(benchmark::State& state) {
-  const Eigen::VectorXf buffer = Eigen::VectorXf::Random(3 * state.range(0) * 3 * kLandmarks);
-  openblas_set_num_threads(1);
-  for (auto _ : state) benchmark::DoNotOptimize(cblas_sasum(static_cast<int>(buffer.size()), buffer.data(), 1));
-  state.SetBytesProcessed(state.iterations() * buffer.size() * static_cast<std::int64_t>(sizeof(float)));
+  const std::size_t floats = static_cast<std::size_t>(3 * state.range(0) * 3 * kLandmarks) / 256 * 256;
+  const detail::AlignedVector<float> buffer(floats, 1.0F);
+  for (auto _ : state) benchmark::DoNotOptimize(bench::read_stream(buffer.data(), floats));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(floats * sizeof(float)));
 }
 BENCHMARK(read_bandwidth)->Apply(sizes);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+/// Google Benchmark's own options, or the long measurement: [--quick] [--json FILE].
+int main(int argc, char** argv) {
+  skinbem::bench::ReportOptions options;
+  bool report = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--quick") {
+      report = options.quick = true;
+    } else if (argument == "--report") {
+      report = true;
+    } else if (argument == "--json" && i + 1 < argc) {
+      report = true;
+      options.json = argv[++i];
+    }
+  }
+  if (report) {
+    try {
+      skinbem::bench::frame_report(options);
+      return 0;
+    } catch (const skinbem::Error& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      return static_cast<int>(error.code());
+    }
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

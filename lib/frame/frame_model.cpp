@@ -43,37 +43,29 @@ void check_numbers(const char* name, const auto& matrix) {
   }
 }
 
-/// Panels of [X - centre, R]; see detail::PanelMatrix.
-detail::AlignedVector<float> packed(const Points& rest, const Vec3& centre, const Eigen::MatrixXd& response) {
-  const detail::PanelMatrix matrix{nullptr, static_cast<std::size_t>(rest.rows()),
-                                   static_cast<std::size_t>(response.cols())};
-  detail::AlignedVector<float> panels(matrix.panels() * matrix.panel_floats(), 0.0F);
-  for (Index i = 0; i < rest.rows(); ++i) {
-    const auto vertex = static_cast<std::size_t>(i);
-    float* panel = panels.data() + vertex / detail::kPanelWidth * matrix.panel_floats() + vertex % detail::kPanelWidth;
-    for (Index c = 0; c < 3; ++c) {
-      float* element = panel + c * detail::kPanelWidth;
-      *element = static_cast<float>(rest(i, c) - centre(c));
-      for (Index k = 0; k < response.cols(); ++k) {
-        *(element += detail::kColumnFloats) = static_cast<float>(response(3 * i + c, k));
-      }
-    }
-  }
-  return panels;
-}
-
 }  // namespace
 
-FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, const Points& landmark_rest, FrameMode mode)
-    : vertex_count_(static_cast<std::size_t>(rest.rows())), landmark_rest_(landmark_rest), mode_(mode) {
+void FrameOptions::validate() const {
+  if (!(error_bound > 0) || !(motion_range > 0) || !std::isfinite(error_bound) || !std::isfinite(motion_range)) {
+    throw Error(ErrorCode::usage, "frame: error bound and motion range must be positive lengths");
+  }
+}
+
+FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, const Points& landmark_rest,
+                       const FrameOptions& options)
+    : landmark_rest_(landmark_rest), options_(options) {
+  options.validate();
   check_shapes(rest, response, landmark_rest);
   check_numbers("the rest position", rest);
   check_numbers("the response matrix", response);
   check_numbers("the landmark position", landmark_rest);
   centre_ = rest.colwise().mean();
   largest_weight_ = kLargest / std::max(1.0, response.cwiseAbs().rowwise().sum().maxCoeff());
-  panels_ = packed(rest, centre_, response);
-  if (mode == FrameMode::corotated && collinear_measure(landmark_rest) < kNearlyCollinear) {
+  const Points centred = rest.rowwise() - centre_.transpose();
+  packed_ = options.storage == FrameStorage::int16
+                ? detail::pack_int16(centred, response, options.error_bound / options.motion_range)
+                : detail::pack_float32(centred, response);
+  if (options.mode == FrameMode::corotated && collinear_measure(landmark_rest) < kNearlyCollinear) {
     warnings_.push_back(
         "the landmarks are nearly collinear, so the rotation of the body about their line is not determined: add a "
         "landmark off the line, or use the linear frame");
@@ -90,7 +82,7 @@ bool FrameState::set_landmarks(const Eigen::Ref<const Points>& displacements) no
   if (displacements.rows() != model_->landmark_count()) return false;
   // Written so that NaN fails. Checked before the fit, which would spread one bad number over all.
   if (!(displacements.array().abs() <= model_->largest_weight_).all()) return false;
-  split_motion(model_->landmark_rest_, displacements, model_->mode_, candidate_);
+  split_motion(model_->landmark_rest_, displacements, model_->options_.mode, candidate_);
   if (!(candidate_.weights.array().abs() <= model_->largest_weight_).all() ||
       !(candidate_.rigid.translation.array().abs() <= kLargest).all()) {
     return false;
@@ -101,11 +93,13 @@ bool FrameState::set_landmarks(const Eigen::Ref<const Points>& displacements) no
 }
 
 detail::FrameFactors FrameState::factors() const noexcept {
-  detail::FrameFactors factors{weights_.data()};
-  const Vec3 translation = motion_.rigid(model_->centre_);
-  for (Index i = 0; i < 3; ++i) {
-    for (Index j = 0; j < 3; ++j) factors.rotation[3 * i + j] = static_cast<float>(motion_.rigid.rotation(i, j));
-    factors.translation[i] = static_cast<float>(translation(i));
+  detail::FrameFactors factors;
+  factors.weights = weights_.data();
+  const Eigen::Matrix3f rotation = motion_.rigid.rotation.cast<float>();
+  const Eigen::Vector3f translation = motion_.rigid(model_->centre_).cast<float>();
+  for (Index i = 0; i < Index{detail::FrameFactors::kRepeated}; i += 3) {
+    for (Index j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3f>(factors.rotation[j] + i) = rotation.col(j);
+    Eigen::Map<Eigen::Vector3f>(factors.translation + i) = translation;
   }
   return factors;
 }

@@ -16,11 +16,33 @@
 #include <vector>
 
 #include <skinbem/base/types.hpp>
-#include <skinbem/frame/aligned_buffer.hpp>
 #include <skinbem/frame/body_motion.hpp>
+#include <skinbem/frame/packing.hpp>
 #include <skinbem/frame/panel_product.hpp>
 
 namespace skinbem {
+
+/// How R is kept.
+enum class FrameStorage {
+  float32,  ///< 72 bytes a row for six landmarks
+  int16,    ///< half of it: a scale for every column of every 32 vertices, finer where the error bound asks for it
+};
+
+struct FrameOptions {
+  FrameMode mode = FrameMode::corotated;
+  FrameStorage storage = FrameStorage::float32;
+  /// Largest error of a vertex's displacement that the storage may cause, unit of the mesh.
+  double error_bound = 1e-3;
+  /// The error bound holds while every landmark's q_k is at most this long, unit of the mesh; beyond, the error grows
+  /// in proportion.
+  double motion_range = 10;
+
+  FrameOptions() = default;
+  FrameOptions(FrameMode m) : mode(m) {}  // NOLINT: the mode alone is what most callers choose
+  FrameOptions(FrameMode m, FrameStorage s) : mode(m), storage(s) {}
+  /// Throws Error(usage) where a length is not positive.
+  void validate() const;
+};
 
 class FrameState;
 
@@ -32,31 +54,32 @@ class FrameModel {
   /// `landmark_rest`: p_k = m_k(X), #K by 3. Lengths in the unit of the mesh. Copies what it needs. Throws Error(usage)
   /// on shapes that do not fit and Error(bad_input) on numbers that are not finite or beyond float.
   FrameModel(const Points& rest, const Eigen::MatrixXd& response, const Points& landmark_rest,
-             FrameMode mode = FrameMode::corotated);
+             const FrameOptions& options = {});
 
-  Index vertex_count() const noexcept { return static_cast<Index>(vertex_count_); }
+  Index vertex_count() const noexcept { return static_cast<Index>(packed_.vertices); }
   Index landmark_count() const noexcept { return landmark_rest_.rows(); }
-  FrameMode mode() const noexcept { return mode_; }
+  FrameMode mode() const noexcept { return options_.mode; }
   const Points& landmark_rest() const noexcept { return landmark_rest_; }
   /// What a user should know, in sentences: landmarks so near to a line that they leave a rotation of the body open.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   /// Bytes that a frame reads: R and the rest positions.
-  std::size_t bytes() const noexcept { return panels_.size() * sizeof(float); }
+  std::size_t bytes() const noexcept { return packed_.data.size(); }
+  /// No vertex is displaced wrongly by more than this on account of the storage, unit of the mesh, while no q_k is
+  /// longer than options.motion_range: at most options.error_bound, 0 for float32. The arithmetic in float comes on
+  /// top.
+  double achieved_error_bound() const noexcept { return packed_.error_factor * options_.motion_range; }
 
  private:
   friend class FrameState;
   friend bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
 
-  detail::PanelMatrix matrix() const noexcept {
-    return {panels_.data(), vertex_count_, static_cast<std::size_t>(3 * landmark_rest_.rows())};
-  }
+  detail::PanelMatrix matrix() const noexcept { return packed_.matrix(); }
 
-  std::size_t vertex_count_;
   Points landmark_rest_;
-  FrameMode mode_;
+  FrameOptions options_;
   Vec3 centre_;            ///< the packed rest positions are relative to it: floats are finest about zero
   double largest_weight_;  ///< weights up to here cannot overflow a float on their way
-  detail::AlignedVector<float> panels_;
+  detail::PackedPanels packed_;
   std::vector<std::string> warnings_;
 };
 

@@ -2,6 +2,8 @@
 #include <skinbem/frame/panel_product.hpp>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 // Vectors of a length unknown at compile time cannot be array elements; such machines use their fixed-length set.
 #ifndef HWY_DISABLED_TARGETS
@@ -11,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "skinbem/frame/panel_product.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes first
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -18,100 +21,172 @@ namespace skinbem::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Tag = hn::CappedTag<float, kPanelWidth>;
+using Tag = hn::CappedTag<float, kHalfPanel>;
 using Vector = hn::Vec<Tag>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
-/// Writes `count` positions given as x, y, z of whole blocks; the general case of a stride or a ragged end.
-template <std::size_t kVectors>
-HWY_INLINE void store_scattered(const Vector (&position)[3][kVectors], std::size_t count, FrameTarget target) {
-  const Tag d;
-  HWY_ALIGN float packed[3][kVectors * kLanes];
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t v = 0; v < kVectors; ++v) hn::Store(position[c][v], d, packed[c] + v * kLanes);
+/// The shape of the work: kVectors vectors of vertices, the first half of them in the first half of the panel, the
+/// others 16 vertices on; kFrames frames at once. There is a sum for each frame, component and vector.
+///
+/// All loops over sums are expanded from index sequences: compilers keep an array in registers only where every index
+/// is a constant from the outset.
+template <std::size_t kVectors_, std::size_t kFrames_>
+struct Block {
+  static constexpr std::size_t kVectors = kVectors_;
+  static constexpr std::size_t kFrames = kFrames_;
+  static constexpr std::size_t kSums = 3 * kVectors * kFrames;
+  static constexpr std::size_t kVertices = kVectors / 2 * kLanes;  // in each half of the panel
+
+  static constexpr std::size_t frame(std::size_t sum) { return sum / (3 * kVectors); }
+  static constexpr std::size_t component(std::size_t sum) { return sum / kVectors % 3; }
+  static constexpr std::size_t vector(std::size_t sum) { return sum % kVectors; }
+  static constexpr std::size_t sum(std::size_t f, std::size_t c, std::size_t v) { return (f * 3 + c) * kVectors + v; }
+  /// First vertex of a vector, relative to that of the block.
+  static constexpr std::size_t begin(std::size_t v) {
+    return v < kVectors / 2 ? v * kLanes : kHalfPanel + (v - kVectors / 2) * kLanes;
   }
+};
+
+/// Numbers of a float column, or rest positions, for sum i.
+template <class B>
+HWY_INLINE Vector numbers(const float* HWY_RESTRICT column, std::size_t i) {
+  return hn::Load(Tag(), column + B::component(i) * kPanelWidth + B::begin(B::vector(i)));
+}
+
+/// Numbers of a quantised column, times 2^16: a word is the number of its upper half as it is, that of its lower half
+/// after a shift.
+template <class B>
+HWY_INLINE Vector numbers(const std::int32_t* HWY_RESTRICT column, std::size_t i) {
+  const std::size_t v = B::vector(i);
+  const std::size_t place = v % (B::kVectors / 2) * kLanes;
+  const auto word = hn::Load(hn::RebindToSigned<Tag>(), column + B::component(i) * kHalfPanel + place);
+  return hn::ConvertTo(Tag(), v < B::kVectors / 2 ? hn::ShiftLeft<16>(word) : word);
+}
+
+/// The stream is asked for this many bytes ahead, so that it does not pause while a panel is stored; past its end a
+/// prefetch does nothing.
+constexpr std::size_t kPrefetchDistance = 2048;
+
+/// What a panel's columns are: floats in order, or words with a list of which and how large.
+struct FloatColumns {
+  static constexpr std::size_t kStep = kColumnNumbers;
+  static constexpr std::size_t kLines = kColumnNumbers * sizeof(float) / 64;
+  const float* column;
+
+  FloatColumns(const std::byte* panel, std::size_t) : column(reinterpret_cast<const float*>(panel + kRestBytes)) {}
+  float weight(const FrameFactors& frame, std::size_t entry) const { return frame.weights[entry]; }
+};
+
+struct QuantisedColumns {
+  static constexpr std::size_t kStep = kColumnNumbers / 2;
+  static constexpr std::size_t kLines = kQuantisedColumnBytes / 64;
+  const std::uint32_t* which;
+  const float* scale;
+  const std::int32_t* column;
+
+  QuantisedColumns(const std::byte* panel, std::size_t entries)
+      : which(reinterpret_cast<const std::uint32_t*>(panel + kRestBytes)),
+        scale(reinterpret_cast<const float*>(which + entries)),
+        column(reinterpret_cast<const std::int32_t*>(panel + kRestBytes + entry_list_bytes(entries))) {}
+  float weight(const FrameFactors& frame, std::size_t entry) const {
+    return scale[entry] * frame.weights[which[entry]];
+  }
+};
+
+/// Which vertex each lane of the three vectors x0 y0 z0 x1 y1 z1 ... takes its coordinates from.
+HWY_ALIGN constexpr auto kLaneVertices = [] {
+  std::array<std::int32_t, 3 * kLanes> vertices{};
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<std::int32_t>(i / 3);
+  return vertices;
+}();
+
+/// Q (.) + t of the vertices from `vertex` on, and to memory with x, y, z adjacent. The interleaving is part of the
+/// rotation: each output vector takes the three coordinates of its lanes' vertices, times the lanes' rows of Q.
+HWY_INLINE void move_and_store(Vector x, Vector y, Vector z, const FrameFactors& frame, const FrameTarget& target,
+                               std::size_t vertex, std::size_t vertices) {
+  if (vertex >= vertices) return;
+  const Tag d;
+  Vector position[3];
+  for (std::size_t m = 0; m < 3; ++m) {
+    const auto lane_vertices = hn::SetTableIndices(d, kLaneVertices.data() + m * kLanes);
+    const std::size_t phase = m * kLanes % 3;
+    Vector sum = hn::LoadU(d, frame.translation + phase);
+    sum = hn::MulAdd(hn::LoadU(d, frame.rotation[0] + phase), hn::TableLookupLanes(x, lane_vertices), sum);
+    sum = hn::MulAdd(hn::LoadU(d, frame.rotation[1] + phase), hn::TableLookupLanes(y, lane_vertices), sum);
+    position[m] = hn::MulAdd(hn::LoadU(d, frame.rotation[2] + phase), hn::TableLookupLanes(z, lane_vertices), sum);
+  }
+  const std::size_t count = std::min(kLanes, vertices - vertex);
+  float* to = target.data + vertex * target.stride;
+  if (target.stride == 3 && count == kLanes) {
+    for (std::size_t m = 0; m < 3; ++m) hn::StoreU(position[m], d, to + m * kLanes);
+    return;
+  }
+  HWY_ALIGN float packed[3 * kLanes];
+  for (std::size_t m = 0; m < 3; ++m) hn::Store(position[m], d, packed + m * kLanes);
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) target.data[i * target.stride + c] = packed[c][i];
+    for (std::size_t c = 0; c < 3; ++c) to[i * target.stride + c] = packed[3 * i + c];
   }
 }
 
-/// Q (.) + t of a block in registers, then to memory.
-template <std::size_t kVectors>
-HWY_INLINE void move_and_store(const Vector (&sum)[3][kVectors], const FrameFactors& frame, std::size_t count,
-                               FrameTarget target) {
-  const Tag d;
-  Vector position[3][kVectors];
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float* q = frame.rotation + 3 * c;
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      const Vector x = hn::MulAdd(hn::Set(d, q[0]), sum[0][v], hn::Set(d, frame.translation[c]));
-      position[c][v] = hn::MulAdd(hn::Set(d, q[2]), sum[2][v], hn::MulAdd(hn::Set(d, q[1]), sum[1][v], x));
-    }
+/// The part of a panel that begins `shift` vertices into it.
+template <class B, class Columns, std::size_t... kSum, std::size_t... kFrame, std::size_t... kPosition,
+          std::size_t... kLine>
+HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std::size_t shift,
+                               const FrameFactors* frames, const FrameTarget* targets, std::index_sequence<kSum...>,
+                               std::index_sequence<kFrame...>, std::index_sequence<kPosition...>,
+                               std::index_sequence<kLine...>) {
+  const std::byte* data = matrix.data + matrix.places[panel].offset;
+  const std::size_t entries = matrix.places[panel].entries;
+  const Columns columns(data, entries);
+  const auto* column = columns.column + shift;
+  Vector sum[] = {numbers<B>(reinterpret_cast<const float*>(data) + shift, kSum)...};
+  for (std::size_t k = 0; k < entries; ++k, column += Columns::kStep) {
+    const Vector weight[] = {hn::Set(Tag(), columns.weight(frames[kFrame], k))...};
+    (hwy::Prefetch(reinterpret_cast<const std::byte*>(column) + kPrefetchDistance + 64 * kLine), ...);
+    ((sum[kSum] = hn::MulAdd(numbers<B>(column, kSum), weight[B::frame(kSum)], sum[kSum])), ...);
   }
-  if (target.stride != 3 || count < kVectors * kLanes) return store_scattered(position, count, target);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    hn::StoreInterleaved3(position[0][v], position[1][v], position[2][v], d, target.data + 3 * v * kLanes);
-  }
+  const std::size_t first = panel * kPanelWidth + shift;
+  (move_and_store(sum[B::sum(kPosition / B::kVectors, 0, kPosition % B::kVectors)],
+                  sum[B::sum(kPosition / B::kVectors, 1, kPosition % B::kVectors)],
+                  sum[B::sum(kPosition / B::kVectors, 2, kPosition % B::kVectors)], frames[kPosition / B::kVectors],
+                  targets[kPosition / B::kVectors], first + B::begin(kPosition % B::kVectors), matrix.vertices),
+   ...);
 }
 
-/// kFrames frames of one block of kVectors * kLanes vertices; `block` is its first float in column 0.
-template <std::size_t kVectors, std::size_t kFrames>
-HWY_INLINE void evaluate_block(const float* HWY_RESTRICT block, std::size_t columns, const FrameFactors* frames,
-                               std::size_t count, const FrameTarget* targets, std::size_t first_vertex) {
-  const Tag d;
-  Vector sum[kFrames][3][kVectors];
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      const Vector rest = hn::Load(d, block + c * kPanelWidth + v * kLanes);
-      for (std::size_t f = 0; f < kFrames; ++f) sum[f][c][v] = rest;
-    }
-  }
-  const float* weights[kFrames];
-  for (std::size_t f = 0; f < kFrames; ++f) weights[f] = frames[f].weights;
-  for (std::size_t k = 0; k < columns; ++k) {
-    block += kColumnFloats;
-    Vector weight[kFrames];
-    for (std::size_t f = 0; f < kFrames; ++f) weight[f] = hn::Set(d, weights[f][k]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t v = 0; v < kVectors; ++v) {
-        const Vector r = hn::Load(d, block + c * kPanelWidth + v * kLanes);
-        for (std::size_t f = 0; f < kFrames; ++f) sum[f][c][v] = hn::MulAdd(r, weight[f], sum[f][c][v]);
-      }
-    }
-  }
-  for (std::size_t f = 0; f < kFrames; ++f) {
-    const FrameTarget to = {targets[f].data + first_vertex * targets[f].stride, targets[f].stride};
-    move_and_store<kVectors>(sum[f], frames[f], count, to);
-  }
-}
-
-template <std::size_t kVectors, std::size_t kFrames>
+template <class B, class Columns>
 HWY_INLINE void evaluate_panel(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
                                const FrameTarget* targets) {
-  constexpr std::size_t kBlock = kVectors * kLanes;
-  const float* data = matrix.data + panel * matrix.panel_floats();
-  const std::size_t begin = panel * kPanelWidth;
-  const std::size_t end = std::min(begin + kPanelWidth, matrix.vertices);
-  for (std::size_t vertex = begin; vertex < end; vertex += kBlock) {
-    evaluate_block<kVectors, kFrames>(data + (vertex - begin), matrix.columns, frames, std::min(kBlock, end - vertex),
-                                      targets, vertex);
+  for (std::size_t shift = 0; shift < kHalfPanel; shift += B::kVertices) {
+    evaluate_block<B, Columns>(matrix, panel, shift, frames, targets, std::make_index_sequence<B::kSums>(),
+                               std::make_index_sequence<B::kFrames>(),
+                               std::make_index_sequence<B::kFrames * B::kVectors>(),
+                               std::make_index_sequence<Columns::kLines>());
   }
 }
 
 // As many sums as registers allow: enough to hide the latency of the multiply-add, and in a batch each number of R that
 // is loaded serves several frames.
-constexpr std::size_t kSingleVectors = std::min<std::size_t>(4, kPanelWidth / kLanes);
-constexpr std::size_t kBatchVectors = std::min<std::size_t>(2, kSingleVectors);
-constexpr std::size_t kBatchFrames = kLanes >= 16 ? 4 : 2;
+using SingleBlock = Block<std::min<std::size_t>(4, kPanelWidth / kLanes), 1>;
+using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
+
+template <class Columns>
+HWY_INLINE void evaluate_panels(const PanelMatrix& matrix, std::size_t first, std::size_t last,
+                                const FrameFactors* frames, const FrameTarget* targets, std::size_t frame_count) {
+  for (std::size_t panel = first; panel < last; ++panel) {
+    std::size_t f = 0;
+    for (; f + BatchBlock::kFrames <= frame_count; f += BatchBlock::kFrames) {
+      evaluate_panel<BatchBlock, Columns>(matrix, panel, frames + f, targets + f);
+    }
+    for (; f < frame_count; ++f) evaluate_panel<SingleBlock, Columns>(matrix, panel, frames + f, targets + f);
+  }
+}
 
 void panel_product(const PanelMatrix& matrix, std::size_t first, std::size_t last, const FrameFactors* frames,
                    const FrameTarget* targets, std::size_t frame_count) {
-  for (std::size_t panel = first; panel < last; ++panel) {
-    std::size_t f = 0;
-    for (; f + kBatchFrames <= frame_count; f += kBatchFrames) {
-      evaluate_panel<kBatchVectors, kBatchFrames>(matrix, panel, frames + f, targets + f);
-    }
-    for (; f < frame_count; ++f) evaluate_panel<kSingleVectors, 1>(matrix, panel, frames + f, targets + f);
+  if (matrix.quantised) {
+    evaluate_panels<QuantisedColumns>(matrix, first, last, frames, targets, frame_count);
+  } else {
+    evaluate_panels<FloatColumns>(matrix, first, last, frames, targets, frame_count);
   }
 }
 

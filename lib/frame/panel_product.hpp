@@ -5,30 +5,58 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace skinbem::detail {
 
 /// Vertices a panel: whole vectors of every instruction set up to 512 bit, and little padding on small skins.
 inline constexpr std::size_t kPanelWidth = 32;
-/// Floats of one column of a panel: x of 32 vertices, then y, then z.
-inline constexpr std::size_t kColumnFloats = 3 * kPanelWidth;
+inline constexpr std::size_t kHalfPanel = kPanelWidth / 2;
+/// Numbers of one column of a panel: x of 32 vertices, then y, then z.
+inline constexpr std::size_t kColumnNumbers = 3 * kPanelWidth;
 
-/// [X R] in single precision. Panel p holds the vertices 32 p ... 32 p + 31, column 0 their rest positions, column
-/// 1 + k column k of R; padding vertices are zero. A frame so reads one sequential stream. 64-byte aligned.
-struct PanelMatrix {
-  const float* data = nullptr;
-  std::size_t vertices = 0;
-  std::size_t columns = 0;  ///< of R
-
-  std::size_t panels() const { return (vertices + kPanelWidth - 1) / kPanelWidth; }
-  std::size_t panel_floats() const { return (columns + 1) * kColumnFloats; }
+/// Where a panel begins and how many entries (columns, or parts of columns) it has.
+struct PanelPlace {
+  std::size_t offset = 0;  ///< bytes, a multiple of 64
+  std::size_t entries = 0;
 };
 
-/// What changes from frame to frame.
+/// [X R] by panels of 32 vertices, in one sequential stream of bytes; padding vertices are zero. A panel is
+///   float    rest[96]
+/// then, in single precision, for every column of R
+///   float    column[96]
+/// or, quantised, for every entry (a column where a panel needs it; twice, as value and remainder, where it needs that)
+///   uint32   which column, padded to a multiple of 64 bytes together with
+///   float    scale, times 2^-16
+///   int32    words[48]
+/// Word i of a component holds vertex i in its lower half and, plus what the lower half adds as an unsigned fraction,
+/// vertex i + 16 in its upper half: one load and one shift give two vectors, and the fraction costs no accuracy since
+/// the upper number is rounded with it in view.
+struct PanelMatrix {
+  const std::byte* data = nullptr;  ///< 64-byte aligned
+  const PanelPlace* places = nullptr;
+  std::size_t vertices = 0;
+  bool quantised = false;
+
+  std::size_t panels() const { return (vertices + kPanelWidth - 1) / kPanelWidth; }
+};
+
+constexpr std::size_t padded_to_line(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
+/// Bytes of the rest positions, of a column of either kind, and of the list of entries.
+inline constexpr std::size_t kRestBytes = kColumnNumbers * sizeof(float);
+inline constexpr std::size_t kQuantisedColumnBytes = kColumnNumbers * sizeof(std::int16_t);
+constexpr std::size_t entry_list_bytes(std::size_t entries) {
+  return padded_to_line(entries * (sizeof(std::uint32_t) + sizeof(float)));
+}
+
+/// What changes from frame to frame. Rotation and translation are repeated, so that a vector load at any phase gives
+/// each lane of interleaved coordinates its own row.
 struct FrameFactors {
-  const float* weights = nullptr;                   ///< q, one a column
-  float rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Q, row-major
-  float translation[3] = {0, 0, 0};                 ///< t
+  static constexpr std::size_t kRepeated = 18;  ///< a vector of 16 lanes and a phase of 2
+
+  const float* weights = nullptr;  ///< q, one a column
+  float rotation[3][kRepeated];    ///< rotation[j][i] = Q(i mod 3, j)
+  float translation[kRepeated];    ///< t(i mod 3)
 };
 
 /// Where a frame goes: position i is written to data[i * stride + 0, 1, 2].

@@ -43,10 +43,12 @@ TEST(Frame, RigidMotionOfTheLandmarksMovesTheSkinRigidly) {
 }
 
 TEST(Frame, AgreesWithTheReferenceForAnySizeAndMode) {
-  for (const FrameMode mode : {FrameMode::corotated, FrameMode::linear}) {
-    for (const Index vertices : {1, 7, 31, 32, 33, 64, 606, 1000}) {
+  FrameOptions fine(FrameMode::corotated, FrameStorage::int16);
+  fine.error_bound = 1e-6;
+  for (const FrameOptions& options : {FrameOptions(FrameMode::corotated), FrameOptions(FrameMode::linear), fine}) {
+    for (const Index vertices : {1, 7, 16, 17, 31, 32, 33, 64, 606, 1000}) {
       const SyntheticSkin skin = synthetic_skin(vertices, 1 + vertices % 9);
-      const FrameModel model(skin.rest, skin.response, skin.landmarks, mode);
+      const FrameModel model(skin.rest, skin.response, skin.landmarks, options);
       FrameState state(model);
       EXPECT_LE(largest_difference(evaluated(state), skin.rest), tolerance::frame_rigid * 1000);
       ASSERT_TRUE(state.set_landmarks(bent(skin, 0.4, 10)));
@@ -80,9 +82,12 @@ TEST(Frame, CorotatedSkinTurnsWithTheBodyThatIsDeformedAlike) {
   EXPECT_LE(largest_difference(evaluated(state), expected), 4 * tolerance::frame_rigid * 1000);
 }
 
-TEST(Frame, ABatchGivesTheSameBitsAsFramesOneByOne) {
+class Batch : public testing::TestWithParam<FrameStorage> {};
+INSTANTIATE_TEST_SUITE_P(Storage, Batch, testing::Values(FrameStorage::float32, FrameStorage::int16));
+
+TEST_P(Batch, GivesTheSameBitsAsFramesOneByOne) {
   const SyntheticSkin skin = synthetic_skin(333, 6);
-  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks, {FrameMode::corotated, GetParam()});
   for (const std::size_t count :
        {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{5}, std::size_t{9}, std::size_t{70}}) {
     std::vector<FrameState> states(count, FrameState(model));
@@ -95,6 +100,41 @@ TEST(Frame, ABatchGivesTheSameBitsAsFramesOneByOne) {
       EXPECT_TRUE(std::equal(single.begin(), single.end(), batch.begin() + std::ptrdiff_t(999 * f))) << f;
     }
   }
+}
+
+TEST(Frame, Int16StaysWithinItsErrorBoundForAnyMotionInRange) {
+  for (const Index landmarks : {3, 6, 40}) {
+    const SyntheticSkin skin = synthetic_skin(700, landmarks);
+    const Points centred = skin.rest.rowwise() - skin.rest.colwise().mean();
+    for (const double bound : {1e-2, 1e-3, 2e-5}) {
+      FrameOptions options(FrameMode::linear, FrameStorage::int16);
+      options.error_bound = bound;
+      // About the origin, so that the rounding of the sum itself is small.
+      const FrameModel model(centred, skin.response, skin.landmarks, options);
+      EXPECT_LE(model.achieved_error_bound(), bound);
+      FrameState state(model);
+      double worst = 0;
+      for (int i = 0; i < 20; ++i) {
+        const Points direction = Points::Random(landmarks, 3);
+        const Points displacement = options.motion_range * direction.rowwise().normalized();
+        ASSERT_TRUE(state.set_landmarks(displacement));
+        const Points error = evaluated(state) - evaluate_reference(centred, skin.response, state.motion());
+        worst = std::max(worst, error.rowwise().norm().maxCoeff());
+      }
+      EXPECT_LE(worst, model.achieved_error_bound() + 2 * tolerance::frame_rigid * 200);
+      EXPECT_GE(worst, 0.02 * model.achieved_error_bound()) << "a bound that no motion comes near says nothing";
+    }
+  }
+}
+
+TEST(Frame, Int16TakesHalfTheBytes) {
+  const SyntheticSkin skin = synthetic_skin(640, 20);
+  const FrameModel whole(skin.rest, skin.response, skin.landmarks);
+  FrameOptions options(FrameMode::corotated, FrameStorage::int16);
+  options.error_bound = 1e-2;  // these vertices are in random order: a panel is no patch, and its scales are large
+  const FrameModel half(skin.rest, skin.response, skin.landmarks, options);
+  EXPECT_EQ(whole.achieved_error_bound(), 0);
+  EXPECT_LE(static_cast<double>(half.bytes()), 0.55 * static_cast<double>(whole.bytes()));
 }
 
 TEST(Frame, RefusesLandmarksThatAreNotFiniteAndKeepsThePose) {
@@ -139,6 +179,18 @@ TEST(FrameModel, WarnsOfLandmarksOnALine) {
   EXPECT_THAT(FrameModel(skin.rest, skin.response, skin.landmarks).warnings(),
               testing::ElementsAre(testing::HasSubstr("nearly collinear")));
   EXPECT_TRUE(FrameModel(skin.rest, skin.response, skin.landmarks, FrameMode::linear).warnings().empty());
+}
+
+TEST(FrameModel, RefusesLengthsThatAreNotPositive) {
+  const SyntheticSkin skin = synthetic_skin(40, 3);
+  for (const double length : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    FrameOptions options;
+    options.error_bound = length;
+    EXPECT_THROW(FrameModel(skin.rest, skin.response, skin.landmarks, options), Error);
+    options = {};
+    options.motion_range = length;
+    EXPECT_THROW(FrameModel(skin.rest, skin.response, skin.landmarks, options), Error);
+  }
 }
 
 TEST(FrameModel, RefusesWhatIsNoModel) {

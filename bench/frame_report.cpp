@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame_report.hpp"
+
+#include <cblas.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include <skinbem/base/atomic_file.hpp>
+#include <skinbem/frame/frame_model.hpp>
+
+#include "read_bandwidth.hpp"
+
+namespace skinbem::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Case {
+  Index vertices;
+  Index landmarks;
+  FrameStorage storage;
+};
+
+const char* name_of(FrameStorage storage) { return storage == FrameStorage::int16 ? "int16" : "float32"; }
+
+/// Numbers like those of a leg: every landmark acts about its place, smoothly, and weakly everywhere.
+struct Skin {
+  explicit Skin(const Case& c)
+      : rest(c.vertices, 3), landmarks(c.landmarks, 3), response(3 * c.vertices, 3 * c.landmarks) {
+    std::srand(1);
+    const auto on_leg = [](double s, double angle) {
+      return Vec3(60 * std::cos(angle), 60 * std::sin(angle), 400 * s);
+    };
+    // Along a spiral, so that neighbours in number are neighbours in space, as they are in most files.
+    const auto turns = std::sqrt(static_cast<double>(c.vertices));
+    for (Index i = 0; i < c.vertices; ++i) {
+      const double s = static_cast<double>(i) / static_cast<double>(c.vertices);
+      rest.row(i) = on_leg(s, 2 * M_PI * turns * s);
+    }
+    for (Index k = 0; k < c.landmarks; ++k) {
+      landmarks.row(k) =
+          on_leg((static_cast<double>(k) + 0.5) / static_cast<double>(c.landmarks), 2.4 * static_cast<double>(k));
+    }
+    const double reach = 150 / std::sqrt(static_cast<double>(c.landmarks));
+    for (Index i = 0; i < c.vertices; ++i) {
+      Eigen::VectorXd weight(c.landmarks);
+      for (Index k = 0; k < c.landmarks; ++k) {
+        weight(k) = 1 / (1 + (rest.row(i) - landmarks.row(k)).squaredNorm() / (reach * reach));
+      }
+      weight /= weight.sum();
+      for (Index k = 0; k < c.landmarks; ++k) {
+        response.block<3, 3>(3 * i, 3 * k) = weight(k) * (Mat3::Identity() + 0.1 * Mat3::Ones() * weight(k));
+      }
+    }
+  }
+
+  Points rest;
+  Points landmarks;
+  Eigen::MatrixXd response;
+};
+
+/// Times of one way to do the work, and what it does.
+struct Contender {
+  std::function<void()> run;
+  std::vector<double> microseconds = {};
+
+  double percentile(double share) {
+    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(microseconds.size() - 1));
+    std::nth_element(microseconds.begin(), microseconds.begin() + place, microseconds.end());
+    return microseconds[static_cast<std::size_t>(place)];
+  }
+};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Runs the contenders in turns of a millisecond or ten frames, until `frames` each or `budget` seconds in all.
+void measure(std::vector<Contender*> contenders, std::size_t frames, double budget) {
+  for (Contender* contender : contenders) contender->run();
+  const auto start = Clock::now();
+  while (contenders.front()->microseconds.size() < frames && seconds_since(start) < budget) {
+    for (Contender* contender : contenders) {
+      const auto turn = Clock::now();
+      contender->run();  // brings its data back into the cache
+      for (int i = 0; i < 10 || seconds_since(turn) < 1e-3; ++i) {
+        const auto begin = Clock::now();
+        contender->run();
+        contender->microseconds.push_back(1e6 * seconds_since(begin));
+      }
+    }
+  }
+}
+
+nlohmann::json measured(const Case& c, std::size_t frames, double budget) {
+  const Skin skin(c);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks, {FrameMode::corotated, c.storage});
+  const Points displacements = 10 * Points::Random(c.landmarks, 3);
+  FrameState state(model);
+  std::vector<float> positions(static_cast<std::size_t>(3 * c.vertices));
+  Contender ours{[&] { state.evaluate(positions); }};
+  Contender whole{[&] {
+    if (!state.set_landmarks(displacements)) std::abort();
+    state.evaluate(positions);
+  }};
+
+  const Eigen::MatrixXf response = skin.response.cast<float>();
+  const Eigen::VectorXf rest = Eigen::Map<const Eigen::VectorXd>(skin.rest.data(), skin.rest.size()).cast<float>();
+  const Eigen::VectorXf q = Eigen::VectorXf::Random(response.cols());
+  Eigen::VectorXf out(rest.size());
+  Contender eigen{[&] {
+    out = rest;
+    out.noalias() += response * q;
+  }};
+  Contender openblas{[&] {
+    out = rest;
+    cblas_sgemv(CblasColMajor, CblasNoTrans, static_cast<int>(response.rows()), static_cast<int>(response.cols()), 1,
+                response.data(), static_cast<int>(response.rows()), q.data(), 1, 1, out.data(), 1);
+  }};
+
+  // What a frame moves: the packed model, the output, and the lines of the output that a write fetches first.
+  const double bytes = static_cast<double>(model.bytes()) + 24.0 * static_cast<double>(c.vertices);
+  const std::size_t floats = static_cast<std::size_t>(bytes / sizeof(float)) / 256 * 256;
+  const detail::AlignedVector<float> buffer(floats, 1.0F);
+  volatile float sink = 0;
+  Contender read{[&] { sink = read_stream(buffer.data(), floats); }};
+
+  measure({&ours, &eigen, &openblas, &read, &whole}, frames, budget);
+  nlohmann::json row;
+  row["vertices"] = c.vertices;
+  row["landmarks"] = c.landmarks;
+  row["storage"] = name_of(c.storage);
+  row["threads"] = 1;
+  row["p50_us"] = ours.percentile(0.5);
+  row["p99_us"] = ours.percentile(0.99);
+  row["p999_us"] = ours.percentile(0.999);
+  row["max_us"] = ours.percentile(1);
+  row["with_rigid_fit_us"] = whole.percentile(0.5);
+  row["eigen_us"] = eigen.percentile(0.5);
+  row["openblas_us"] = openblas.percentile(0.5);
+  row["bandwidth_fraction"] = read.percentile(0.5) / ours.percentile(0.5);
+  row["bytes"] = bytes;
+  row["gigabytes_per_second"] = bytes * 1e-3 / ours.percentile(0.5);
+  row["error_bound"] = model.achieved_error_bound();
+  row["frames"] = ours.microseconds.size();
+  return row;
+}
+
+std::vector<Case> cases(bool quick) {
+  std::vector<Case> result;
+  for (const FrameStorage storage : {FrameStorage::float32, FrameStorage::int16}) {
+    for (const Index vertices : {606, 2000, 10000, 50000, 500000}) {
+      for (const Index landmarks : {6, 40, 100, 300}) {
+        // Beyond, the model in double alone takes gigabytes; the small ones show the same behaviour.
+        const double numbers = 9.0 * static_cast<double>(vertices * landmarks);
+        if (numbers > (quick ? 3e7 : 1e8)) continue;
+        result.push_back({vertices, landmarks, storage});
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void frame_report(const ReportOptions& options) {
+  omp_set_num_threads(1);
+  std::printf("instruction set %s; one thread; times in microseconds, percentiles of a frame\n",
+              detail::instruction_set());
+  std::printf("%8s %9s %8s %9s %9s %9s %9s %9s %9s %9s %7s %7s %9s\n", "vertices", "landmarks", "storage", "p50", "p99",
+              "p99.9", "max", "with fit", "Eigen", "OpenBLAS", "of read", "GB/s", "error");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Case& c : cases(options.quick)) {
+    const nlohmann::json row = measured(c, options.quick ? 2000 : 100000, options.quick ? 0.4 : 60);
+    const auto number = [&](const char* key) { return row[key].get<double>(); };
+    std::printf("%8ld %9ld %8s %9.2f %9.2f %9.2f %9.2f %9.2f %9.2f %9.2f %7.2f %7.1f %9.1e\n", c.vertices, c.landmarks,
+                name_of(c.storage), number("p50_us"), number("p99_us"), number("p999_us"), number("max_us"),
+                number("with_rigid_fit_us"), number("eigen_us"), number("openblas_us"), number("bandwidth_fraction"),
+                number("gigabytes_per_second"), number("error_bound"));
+    std::fflush(stdout);
+    rows.push_back(row);
+  }
+  if (options.json) {
+    write_file_atomically(*options.json, [&](std::ostream& out) { out << rows.dump(1) << '\n'; });
+  }
+}
+
+}  // namespace skinbem::bench
