@@ -7,7 +7,7 @@ the hollow half of each joint fit the round half.
 """
 from anthropometry import (ANKLE_HEIGHT, BALL_Y, FIBULA_LENGTH, METATARSAL_HEADS, METATARSAL_PROTRUSION, PHALANGES,
                            PLATEAU_HEIGHT)
-from sdf import ball, blend, box, carve, common, cone, ellipsoid, frame, half_space, loft, offset, tube, union
+from sdf import ball, blend, box, carve, common, cone, ellipsoid, frame, half_space, loft, offset, tube
 
 GAP = 2.0  # joint space, mm
 

@@ -16,7 +16,7 @@ import bones
 import checks
 import motion
 import skin
-from mesher import evaluate, flip_edges, grid, marching_tetrahedra, norm, cross, project, remesh
+from mesher import evaluate, grid, marching_tetrahedra, norm, cross, project, remesh
 
 SKIN_VERTICES = 606
 BONE_VERTICES = 4797

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The skin of the lower limb as a solid: soft tissue around the bones of bones.py, cut flat above the knee.
 
-Girths and breadths are those of anthropometry.py; `checks.py` prints what the mesh measures against them.
+Girths and breadths are those of anthropometry.py; `make.py` prints what the mesh measures.
 """
 import numpy as np
 
-from anthropometry import ANKLE_HEIGHT, CUT_HEIGHT, METATARSAL_HEADS, PHALANGES, PLATEAU_HEIGHT
-from sdf import ball, blend, carve, common, cone, ellipsoid, half_space, loft, offset, smooth_max, smooth_min, tube, union
+from anthropometry import CUT_HEIGHT, METATARSAL_HEADS
+from sdf import blend, carve, common, cone, ellipsoid, half_space, loft, offset, smooth_max, smooth_min, tube, union
 
 # (z, centre x, centre y, half width medial, lateral, depth front, back)
 LEG = [
