@@ -35,7 +35,7 @@ class TextFile {
 /// Without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
 /// For messages: the text between single quotes.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 /// The pieces between blanks and tabs.
 std::vector<std::string_view> words(std::string_view text);
 /// The pieces between separators: always one more than there are separators.

@@ -23,7 +23,7 @@ class Reader {
   BvhMotion read() {
     expect("HIERARCHY");
     while (peek() == "ROOT") read_tree();
-    if (motion_.joints.empty()) fail("expected ROOT, found " + quoted(peek()));
+    if (motion_.joints.empty()) fail("expected ROOT, found " + in_quotes(peek()));
     expect("MOTION");
     read_frames();
     return std::move(motion_);
@@ -48,19 +48,19 @@ class Reader {
   }
   void expect(std::string_view keyword) {
     const std::string_view word = next();
-    if (word != keyword) fail("expected " + std::string(keyword) + ", found " + quoted(word));
+    if (word != keyword) fail("expected " + std::string(keyword) + ", found " + in_quotes(word));
   }
   double number() {
     const std::string_view word = next();
     const std::optional<double> value = parse_number(word);
-    if (!value) fail(quoted(word) + " is not a finite number");
+    if (!value) fail(in_quotes(word) + " is not a finite number");
     return *value;
   }
   Index count(Index most) {
     const std::string_view word = next();
     const std::optional<std::int64_t> value = parse_integer(word);
     if (!value || *value < 0 || *value > most) {
-      fail(quoted(word) + " is not a count from 0 to " + std::to_string(most));
+      fail(in_quotes(word) + " is not a count from 0 to " + std::to_string(most));
     }
     return *value;
   }
@@ -98,7 +98,7 @@ void Reader::read_tree() {
     } else if (word == "CHANNELS" && !open.empty() && !in_end_site) {
       read_channels(motion_.joints[open.back()]);
     } else {
-      fail(quoted(word) + " does not belong here; a joint holds OFFSET, CHANNELS, JOINT, End Site and }");
+      fail(in_quotes(word) + " does not belong here; a joint holds OFFSET, CHANNELS, JOINT, End Site and }");
     }
   } while (!open.empty());
 }
@@ -121,9 +121,9 @@ void Reader::read_channels(BvhJoint& joint) {
     const std::string_view word = next();
     const auto* const known = std::find_if(std::begin(channel_names), std::end(channel_names),
                                            [&](const auto& channel) { return channel.first == word; });
-    if (known == std::end(channel_names)) fail("unknown channel " + quoted(word) + ", such as Xrotation is meant");
+    if (known == std::end(channel_names)) fail("unknown channel " + in_quotes(word) + ", such as Xrotation is meant");
     if (std::count(joint.channels.begin(), joint.channels.end(), known->second)) {
-      fail("channel " + quoted(word) + " is given twice");
+      fail("channel " + in_quotes(word) + " is given twice");
     }
     joint.channels.push_back(known->second);
   }
@@ -137,7 +137,7 @@ void Reader::read_frames() {
   expect("Time:");
   motion_.frame_time = number();
   if (!(motion_.frame_time > 0)) fail("the frame time must be positive");
-  if (!words_.empty()) fail("superfluous " + quoted(words_.back()) + " after the frame time");
+  if (!words_.empty()) fail("superfluous " + in_quotes(words_.back()) + " after the frame time");
 
   std::vector<double> values;
   Index read = 0;
@@ -151,7 +151,7 @@ void Reader::read_frames() {
     }
     for (const std::string_view word : row) {
       const std::optional<double> value = parse_number(word);
-      if (!value) file_.fail(line_ + 1, quoted(word) + " is not a finite number");
+      if (!value) file_.fail(line_ + 1, in_quotes(word) + " is not a finite number");
       values.push_back(*value);
     }
   }

@@ -60,8 +60,8 @@ std::string_view Reader::header(std::string_view key) const {
   const std::vector<std::string_view> keys = fields(file_.lines()[1]);
   const std::vector<std::string_view> values = fields(file_.lines()[2]);
   const std::size_t column = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
-  if (column == keys.size()) file_.fail(2, "the header has no " + quoted(key));
-  if (column >= values.size() || values[column].empty()) file_.fail(3, "no value for " + quoted(key));
+  if (column == keys.size()) file_.fail(2, "the header has no " + in_quotes(key));
+  if (column >= values.size() || values[column].empty()) file_.fail(3, "no value for " + in_quotes(key));
   return values[column];
 }
 
@@ -81,7 +81,7 @@ void Reader::read_header() {
   marker_count_ = static_cast<Index>(markers);
   const std::string_view unit = header("Units");
   if (unit != "mm" && unit != "cm" && unit != "m") {
-    file_.fail(3, "unknown unit " + quoted(unit) + ", it can be mm, cm or m");
+    file_.fail(3, "unknown unit " + in_quotes(unit) + ", it can be mm, cm or m");
   }
   millimetres_ = unit == "mm" ? 1 : unit == "cm" ? 10 : 1000;
 }
@@ -97,7 +97,7 @@ void Reader::read_names() {
           4, "field " + std::to_string(i + 1) + ": a marker's name stands above its X, the next two fields are empty");
     }
     if (!name_expected) continue;
-    if (motion_.find(std::string(names[i])) >= 0) file_.fail(4, "two markers are called " + quoted(names[i]));
+    if (motion_.find(std::string(names[i])) >= 0) file_.fail(4, "two markers are called " + in_quotes(names[i]));
     motion_.markers.emplace_back(names[i]);
   }
   if (std::ssize(motion_.markers) != marker_count_) {
@@ -129,7 +129,7 @@ void Reader::read_row(std::size_t line, Index row) {
                          std::to_string(expected));
   }
   const std::optional<std::int64_t> frame = parse_integer(cells[0]);
-  if (!frame) file_.fail(line, "frame number " + quoted(cells[0]) + " is not a whole number");
+  if (!frame) file_.fail(line, "frame number " + in_quotes(cells[0]) + " is not a whole number");
   const double time = number(line, cells[1]);
   if (row == 0) {
     motion_.first_frame = *frame;
@@ -154,7 +154,7 @@ void Reader::read_row(std::size_t line, Index row) {
 
 double Reader::number(std::size_t line, std::string_view cell) const {
   const std::optional<double> value = parse_number(cell);
-  if (!value) file_.fail(line, quoted(cell) + " is not a finite number");
+  if (!value) file_.fail(line, in_quotes(cell) + " is not a finite number");
   return *value;
 }
 
