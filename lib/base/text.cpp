@@ -50,8 +50,10 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::string in_quotes(std::string_view text) {
-  std::string result(1, '\'');
-  return result.append(text).append(1, '\'');
+  constexpr std::size_t longest = 40;
+  std::string result = "'";
+  for (const char c : text.substr(0, longest)) result += (c >= 0x20 && c < 0x7F) ? c : '?';
+  return result + (text.size() > longest ? "...'" : "'");
 }
 
 std::vector<std::string_view> words(std::string_view text) {

@@ -34,7 +34,7 @@ class TextFile {
 
 /// Without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
-/// For messages: the text between single quotes.
+/// A piece of a file for use in a message: in single quotes, unprintable bytes as '?', shortened.
 std::string in_quotes(std::string_view text);
 /// The pieces between blanks and tabs.
 std::vector<std::string_view> words(std::string_view text);

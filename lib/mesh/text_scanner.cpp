@@ -39,13 +39,6 @@ void require_text(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view word) {
-  constexpr std::size_t longest = 40;
-  std::string result = "'";
-  for (const char c : word.substr(0, longest)) result += (c >= 0x20 && c < 0x7F) ? c : '?';
-  return result + (word.size() > longest ? "...'" : "'");
-}
-
 void fail_at_line(const std::string& name, std::int64_t line, const std::string& message) {
   throw Error(ErrorCode::bad_input, name + ":" + std::to_string(line) + ": " + message);
 }

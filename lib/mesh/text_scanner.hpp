@@ -8,10 +8,9 @@
 #include <string>
 #include <string_view>
 
-namespace skinbem {
+#include <skinbem/base/text.hpp>
 
-/// A word of a file for use in a message: in single quotes, unprintable bytes as '?', shortened.
-std::string in_quotes(std::string_view word);
+namespace skinbem {
 
 /// Throws Error(bad_input, "name:line: message").
 [[noreturn]] void fail_at_line(const std::string& name, std::int64_t line, const std::string& message);
