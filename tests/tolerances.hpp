@@ -36,4 +36,10 @@ inline constexpr double motion = 1e-12;
 /// Winding numbers with far triangles as dipoles at three radii: measured 4e-3 at worst; a decision needs 0.5.
 inline constexpr double winding_number = 2e-2;
 
+
+/// Numbers stored as float in a file, a dozen of them combined: some roundings of single precision.
+inline constexpr double float_file = 2e-6;
+/// A derivative against central differences of step 1e-3 on a body of size 100.
+inline constexpr double central_difference = 1e-6;
+
 }  // namespace skinbem::tolerance
