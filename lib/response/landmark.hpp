@@ -11,13 +11,13 @@
 namespace skinbem {
 
 struct Landmark {
-  std::string name;
+  std::string name = {};
   std::int32_t vertex = 0;  ///< index of the mesh vertex at its centre
-  double radius =
-      0;             ///< of the patch that carries it, unit of the mesh; below the shortest edge at the vertex: a point
-  std::string bone;  ///< the bone that carries it; empty where the file names none
-  std::optional<Vec3>
-      bone_point;  ///< the point of that bone nearest to it at rest, mesh coordinates; only `literal` motion needs it
+  /// Of the patch that carries it, unit of the mesh; below the shortest edge at the vertex: a point.
+  double radius = 0;
+  std::string bone = {};  ///< the bone that carries it; empty where the file names none
+  /// The point of that bone nearest to it at rest, mesh coordinates; only `literal` motion needs it.
+  std::optional<Vec3> bone_point = {};
 };
 
 }  // namespace skinbem

@@ -16,11 +16,11 @@ namespace skinbem {
 
 /// What `response` needs to know beside mesh and landmarks.
 struct ResponseOptions {
-  double poisson =
-      0.45;  ///< nu in (-1, 0.5]; a body with cavities: up to 0.49. R depends on no other property of the material.
-  double tolerance =
-      1e-6;  ///< of max|R - R_d| / max|R_d|, R_d the exactly integrated P1 collocation result; 1e-12 to 1e-1
-  Progress progress;
+  /// nu in (-1, 0.5]; a body with cavities: up to 0.49. R depends on no other property of the material.
+  double poisson = 0.45;
+  /// Of max|R - R_d| / max|R_d|, R_d the exactly integrated P1 collocation result; 1e-12 to 1e-1.
+  double tolerance = 1e-6;
+  Progress progress = {};
 
   /// Throws Error(usage) naming the value that is out of its range.
   void validate() const;
