@@ -20,7 +20,7 @@ constexpr double straight = 3.0;
 /// tolerances (docs/quadrature.md): from ray to ray, and along a ray, where the double layer's poles are of fourth
 /// order.
 constexpr double margin_across = 7.5;
-constexpr double margin_along = 8.0;
+constexpr double margin_along = 9.0;
 constexpr double margin_trigonometric = 3.0;
 
 /// The disc pays where x is closer to c than this fraction of its radius: a full disc, a sector.
@@ -120,9 +120,11 @@ void NearSingularRule::find_closest_point(const Vector& x) {
 /// A strip between c and an edge that is thinner than the tolerance allows us to see is left out: c is taken as lying
 /// on the edge.
 void NearSingularRule::snap_to_edges() {
-  const double invisible = 0.01 * std::exp(-digits_) * delta_;
-  for (int e = 0; e < 3; ++e)
-    if (hats_c_[e] * triangle_->twice_area < invisible * triangle_->edge_lengths[e]) hats_c_[e] = 0;
+  const double share = 0.01 * std::exp(-digits_);
+  for (int e = 0; e < 3; ++e) {
+    const double height = triangle_->twice_area / triangle_->edge_lengths[e];
+    if (hats_c_[e] * height < share * std::min(delta_, height)) hats_c_[e] = 0;
+  }
 }
 
 /// The rays from c to edge `e`: one fan, or two with a common ray at the foot of x, whichever takes fewer.

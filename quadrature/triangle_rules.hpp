@@ -21,7 +21,7 @@ inline constexpr int max_symmetric_degree = 14;
 /// The stored rule of fewest points that is exact to `degree` (1 to max_symmetric_degree). It has the full symmetry of
 /// the triangle, all points inside and all weights positive. A degree between two stored ones gets the next.
 /// The number of points is, degree: points, 1: 1, 2: 3, 4: 6, 5: 7, 6: 12, 7: 15, 8: 16, 9: 19, 10: 25, 11: 28, 12:
-/// 33, 14: 42.
+/// 33, 13: 37, 14: 42.
 /// Built at its first use; any thread may ask; the reference stays valid and the rule never changes.
 /// Throws std::invalid_argument for another degree.
 ///

@@ -46,7 +46,7 @@ void measure_conditioning(const Case& c, const Kelvin<Real>& kernel, Row& row) {
 }
 
 Row integrate(const Case& c) {
-  const Kelvin<Real> kernel{Real(c.nu), Real(1)};
+  const Kelvin<Real> kernel{decimal(c.nu), Real(1)};
   const Corners corners = to_real(c.corners);
   const Vec3 x = c.x.cast<Real>();
   Row row{};
@@ -131,7 +131,7 @@ void compare_case_table(const std::filesystem::path& path) {
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const QuadratureCase& c = cases[k];
     const Blocks ours =
-        integrate_element(to_real(c.vertices), c.x.cast<Real>(), Kelvin<Real>{Real(c.poisson), Real(1)});
+        integrate_element(to_real(c.vertices), c.x.cast<Real>(), Kelvin<Real>{decimal(c.poisson), Real(1)});
     ElementBlocks rounded_ours;
     for (int a = 0; a < 3; ++a) {
       rounded_ours.U[a] = ours.U[a].cast<double>();

@@ -84,9 +84,7 @@ class Maker {
   template <class Place>
   void add(const std::string& group, const Shape& shape, Place&& place) {
     Case c;
-    char id[8];
-    std::snprintf(id, sizeof id, "e%03d", static_cast<int>(cases_.size()) + 1);
-    c.id = id;
+    c.id = std::string("e").append(std::to_string(cases_.size() + 1));
     c.group = group;
     c.shape = shape.name;
     const Ratio ratio = random.one_of(ratios);
@@ -141,12 +139,12 @@ std::vector<Case> make_cases() {
   Random& random = maker.random;
   const auto edge = [&](Case& c) {
     const int e = static_cast<int>(3 * random.uniform());
-    c.position = "edge" + std::to_string(e);
+    c.position = std::string("edge").append(std::to_string(e));
     return e;
   };
   const auto corner = [&](Case& c) {
     const int k = static_cast<int>(3 * random.uniform());
-    c.position = "v" + std::to_string(k);
+    c.position = std::string("v").append(std::to_string(k));
     return k;
   };
   const auto side = [&] { return random.uniform() < 0.5 ? -1.0 : 1.0; };
@@ -155,7 +153,7 @@ std::vector<Case> make_cases() {
   };
 
   maker.add_class("near_interior", 4, [&](const Corners2& v, double ratio, Case& c) {
-    c.position = "interior";
+    c.position = std::string("interior");
     return Vector3d(inside(v, random) + Vector3d(0, 0, side() * ratio));
   });
   maker.add_class("near_edge", 4, [&](const Corners2& v, double ratio, Case& c) {
@@ -178,21 +176,21 @@ std::vector<Case> make_cases() {
     return Vector3d(on_edge(v, e) + ratio * outward(v, e));
   });
   maker.add_class("inplane_collinear", 1, [&](const Corners2& v, double ratio, Case& c) {
-    c.position = "beyond_v0";  // edge v0 v1 lies on the x axis
+    c.position = std::string("beyond_v0");  // edge v0 v1 lies on the x axis
     return Vector3d(v[0] - Vector3d(ratio, 0, 0));
   });
   maker.add_class("at_vertex", 2, [&](const Corners2& v, double, Case& c) {
-    c.ratio = "0";
+    c.ratio = std::string("0");
     return v[corner(c)];
   });
   maker.add_class("inplane_interior_cpv", 1, [&](const Corners2& v, double, Case& c) {
-    c.ratio = "0";
-    c.position = "interior";
+    c.ratio = std::string("0");
+    c.position = std::string("interior");
     return inside(v, random);
   });
   maker.add_class("far", 1, [&](const Corners2& v, double, Case& c) {
-    c.ratio = "4";
-    c.position = "random";
+    c.ratio = std::string("4");
+    c.position = std::string("random");
     const Vector3d direction(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
     return Vector3d(v[0] + random.between(2, 6) * direction.normalized());
   });

@@ -19,6 +19,9 @@ using Vec3 = Eigen::Matrix<Real, 3, 1>;
 using Mat3 = Eigen::Matrix<Real, 3, 3>;
 using Corners = std::array<Vec3, 3>;
 
+/// A Poisson ratio as the decimal that the double stands for, 3/10 and not the double next to it.
+inline Real decimal(double nu) { return Real(static_cast<long>(nu * 1e6 + (nu < 0 ? -0.5 : 0.5))) / Real(1000000); }
+
 /// int N_a U dS and int N_a T dS for the hats a = 0, 1, 2; T has no value for the hat of a vertex that is x.
 struct Blocks {
   std::array<Mat3, 3> U;

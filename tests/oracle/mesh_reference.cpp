@@ -144,7 +144,7 @@ void write_mesh_references(const std::filesystem::path& folder) {
       for (std::size_t k = 0; k < r.landmarks.size(); ++k) out << 'L' << k + 1 << ',' << r.landmarks[k] << '\n';
     });
     for (const auto& [suffix, nu] : poisson_ratios) {
-      const Assembled a = assemble(r.mesh, {Real(nu), Real(1)});
+      const Assembled a = assemble(r.mesh, {decimal(nu), Real(1)});
       const auto file = [&](const char* letter) { return folder / (r.name + '_' + letter + '_' + suffix + ".npy"); };
       write_npy(file("H"), a.H);
       Matrix G_K(a.G.rows(), 3 * static_cast<Index>(r.landmarks.size()));
@@ -161,7 +161,7 @@ void compare_mesh(const std::filesystem::path& prefix) {
   const TriangleMesh mesh = read_obj(prefix.string() + ".obj");
   const Index n = 3 * mesh.vertex_count();
   for (const auto& [suffix, nu] : poisson_ratios) {
-    const Assembled a = assemble(mesh, {Real(nu), Real(1)});
+    const Assembled a = assemble(mesh, {decimal(nu), Real(1)});
     const auto theirs = [&](const char* letter) {
       return read_npy(prefix.string() + '_' + letter + '_' + suffix + ".npy", n, n);
     };

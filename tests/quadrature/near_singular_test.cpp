@@ -33,6 +33,10 @@ void expect_table_within(const std::filesystem::path& path, double tolerance) {
 
 class NearSingularTolerance : public testing::TestWithParam<double> {};
 
+TEST_P(NearSingularTolerance, IsMetOnEveryCaseOfTheTable) {
+  expect_table_within(testing_support::project_file("tests/reference/quadrature_cases.csv"), GetParam());
+}
+
 TEST_P(NearSingularTolerance, IsMetOnEveryCaseOfTheSharedTable) {
   SKINBEM_NEEDS_SHARED_DATA("reference/quadrature_cases.csv");
   expect_table_within(testing_support::shared_data("reference/quadrature_cases.csv"), GetParam());
