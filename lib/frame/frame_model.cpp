@@ -59,7 +59,7 @@ FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, cons
   check_numbers("the rest position", rest);
   check_numbers("the response matrix", response);
   check_numbers("the landmark position", landmark_rest);
-  centre_ = rest.colwise().mean();
+  centre_ = options.directions ? Vec3(Vec3::Zero()) : Vec3(rest.colwise().mean());
   largest_weight_ = kLargest / std::max(1.0, response.cwiseAbs().rowwise().sum().maxCoeff());
   const Points centred = rest.rowwise() - centre_.transpose();
   packed_ = options.storage == FrameStorage::int16
@@ -83,6 +83,18 @@ bool FrameState::set_landmarks(const Eigen::Ref<const Points>& displacements) no
   // Written so that NaN fails. Checked before the fit, which would spread one bad number over all.
   if (!(displacements.array().abs() <= model_->largest_weight_).all()) return false;
   split_motion(model_->landmark_rest_, displacements, model_->options_.mode, candidate_);
+  return accept_candidate();
+}
+
+bool FrameState::set_motion(const BodyMotion& motion) noexcept {
+  if (motion.weights.size() != candidate_.weights.size() || !(motion.rigid.rotation.array().abs() <= 1.001).all()) {
+    return false;  // not the shape, or not a rotation
+  }
+  candidate_ = motion;
+  return accept_candidate();
+}
+
+bool FrameState::accept_candidate() noexcept {
   if (!(candidate_.weights.array().abs() <= model_->largest_weight_).all() ||
       !(candidate_.rigid.translation.array().abs() <= kLargest).all()) {
     return false;
@@ -96,7 +108,8 @@ detail::FrameFactors FrameState::factors() const noexcept {
   detail::FrameFactors factors;
   factors.weights = weights_.data();
   const Eigen::Matrix3f rotation = motion_.rigid.rotation.cast<float>();
-  const Eigen::Vector3f translation = motion_.rigid(model_->centre_).cast<float>();
+  const Vec3 moved_centre = model_->options_.directions ? Vec3(Vec3::Zero()) : motion_.rigid(model_->centre_);
+  const Eigen::Vector3f translation = moved_centre.cast<float>();
   for (Index i = 0; i < Index{detail::FrameFactors::kRepeated}; i += 3) {
     for (Index j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3f>(factors.rotation[j] + i) = rotation.col(j);
     Eigen::Map<Eigen::Vector3f>(factors.translation + i) = translation;
@@ -105,11 +118,22 @@ detail::FrameFactors FrameState::factors() const noexcept {
 }
 
 bool FrameState::evaluate(std::span<float> positions) const noexcept {
+  return positions.size() == 3 * model_->packed_.vertices && evaluate(VertexTarget{positions});
+}
+
+bool FrameState::evaluate(const VertexTarget& positions) const noexcept {
   const detail::PanelMatrix matrix = model_->matrix();
-  if (positions.size() != 3 * matrix.vertices) return false;
+  if (!positions.holds(matrix.vertices)) return false;
   const detail::FrameFactors frame = factors();
-  const detail::FrameTarget target{positions.data(), 3};
+  const detail::FrameTarget target{positions.vertex(0), positions.stride};
   detail::panel_product(matrix, 0, matrix.panels(), &frame, &target, 1);
+  return true;
+}
+
+bool FrameState::evaluate(const VertexTarget& positions, FrameThreads& threads) const noexcept {
+  const detail::PanelMatrix matrix = model_->matrix();
+  if (!positions.holds(matrix.vertices)) return false;
+  threads.run(matrix, model_->bytes(), factors(), {positions.vertex(0), positions.stride});
   return true;
 }
 

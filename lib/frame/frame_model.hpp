@@ -17,8 +17,10 @@
 
 #include <skinbem/base/types.hpp>
 #include <skinbem/frame/body_motion.hpp>
+#include <skinbem/frame/frame_threads.hpp>
 #include <skinbem/frame/packing.hpp>
 #include <skinbem/frame/panel_product.hpp>
+#include <skinbem/frame/vertex_buffer.hpp>
 
 namespace skinbem {
 
@@ -36,6 +38,9 @@ struct FrameOptions {
   /// The error bound holds while every landmark's q_k is at most this long, unit of the mesh; beyond, the error grows
   /// in proportion.
   double motion_range = 10;
+
+  /// The rest positions are directions, such as normals: a frame turns them and does not shift them.
+  bool directions = false;
 
   FrameOptions() = default;
   FrameOptions(FrameMode m) : mode(m) {}  // NOLINT: the mode alone is what most callers choose
@@ -94,10 +99,18 @@ class FrameState {
   /// shape is wrong or a number is not finite or so large (about 1e37 / |R|) that a float would overflow.
   bool set_landmarks(const Eigen::Ref<const Points>& displacements) noexcept;
 
+  /// The pose of another state, of a model with as many landmarks: normals beside positions need one fit. Returns
+  /// false, and keeps the pose as it was, under the conditions of set_landmarks.
+  bool set_motion(const BodyMotion& motion) noexcept;
+
   /// Writes the positions of all vertices, x, y, z adjacent, mesh frame: always finite. The same bits at every call and
   /// on any number of threads, on one instruction set. Returns false and writes nothing unless positions.size() is 3
   /// #V.
   bool evaluate(std::span<float> positions) const noexcept;
+  /// The same into an attribute of an interleaved buffer. Returns false and writes nothing unless it holds #V vertices.
+  bool evaluate(const VertexTarget& positions) const noexcept;
+  /// The same with the help of other threads where the skin is large enough to gain by it; the same bits.
+  bool evaluate(const VertexTarget& positions, FrameThreads& threads) const noexcept;
 
   /// (Q, t) and q of the present pose: the node's track and the morph weights of a glTF animation.
   const BodyMotion& motion() const noexcept { return motion_; }
@@ -106,6 +119,7 @@ class FrameState {
  private:
   friend bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
 
+  bool accept_candidate() noexcept;
   detail::FrameFactors factors() const noexcept;
 
   const FrameModel* model_;

@@ -55,6 +55,7 @@ TEST(Frame, AllocatesNothing) {
   std::vector<float> positions(3000);
   std::vector<float> batch(15000);
   const Points displacement = Points::Random(6, 3);
+  FrameThreads threads(2, 0);
 
   const long before_vector = allocations;
   const std::vector<float> counted(10);
@@ -65,6 +66,7 @@ TEST(Frame, AllocatesNothing) {
   for (int i = 0; i < 100; ++i) {
     good = good && states[0].set_landmarks(displacement) && states[0].evaluate(positions);
     good = good && evaluate_batch(states, batch);
+    good = good && states[1].evaluate(VertexTarget{positions}, threads);
   }
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(good);

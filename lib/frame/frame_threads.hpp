@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Helpers for large skins: threads that join a frame while it runs.
+#pragma once
+
+#include <memory>
+
+#include <skinbem/frame/panel_product.hpp>
+
+namespace skinbem {
+
+/// Threads that help with frames (FrameState::evaluate). The calling thread never waits for a helper to begin: it works
+/// through the skin from the front while helpers that are awake take pieces from the back, and at the end waits only
+/// for pieces already begun. Per frame there is no lock, no system call and no allocation. A helper that was late, as
+/// on a busy core, is not asked again until what was lost is a small share of the time. Helpers spin for some 50 us
+/// after a frame, then look for the next one every 50 us, after a tenth of a second without frames every millisecond.
+///
+/// One object serves any number of states; while it works for one thread, others evaluate alone. The result has the
+/// same bits whoever helps.
+class FrameThreads {
+ public:
+  /// Bytes of a model below which a frame is over before help pays.
+  static constexpr std::size_t kLeastBytes = 400 * 1024;
+
+  /// `threads` in all, the caller among them; 0: as many as the machine has. `least_bytes`: models that take fewer are
+  /// evaluated by the caller alone. Throws Error(usage) for a negative number.
+  explicit FrameThreads(int threads = 0, std::size_t least_bytes = kLeastBytes);
+  /// Waits for the helpers to end, about a millisecond.
+  ~FrameThreads();
+  FrameThreads(const FrameThreads&) = delete;
+  FrameThreads& operator=(const FrameThreads&) = delete;
+
+  int count() const noexcept;
+
+  /// All panels of one frame. What FrameState::evaluate calls.
+  void run(const detail::PanelMatrix& matrix, std::size_t bytes, const detail::FrameFactors& frame,
+           const detail::FrameTarget& target) noexcept;
+
+ private:
+  struct Crew;
+  std::unique_ptr<Crew> crew_;
+};
+
+}  // namespace skinbem
