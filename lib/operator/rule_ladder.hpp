@@ -28,7 +28,7 @@ struct Rung {
 /// The Gauss rules worth using for a tolerance, cheapest first; nearer than the last one the closed form is used.
 ///
 /// Error model: integrating a kernel of singularity r^-p against a hat function, a rule of degree m errs by at most
-/// c_m(p) (radius / |x - centroid|)^m relative to the largest entry of the block, at |x - centroid| >= 1.1 radius. The
+/// c_m(p) (radius / |x - centroid|)^m relative to the largest entry of the block, at |x - centroid| >= 1.6 radius. The
 /// order m (not m + 1) is the hat function's doing. The constants were measured over triangles of all shapes, positions
 /// and nu against the closed form in quadruple precision (docs/quadrature.md has the plot; a test repeats the
 /// measurement in double).

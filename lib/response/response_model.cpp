@@ -195,6 +195,7 @@ ResponseModel::ResponseModel(ResponseModel&&) noexcept = default;
 ResponseModel& ResponseModel::operator=(ResponseModel&&) noexcept = default;
 
 void ResponseModel::add(std::span<const Landmark> landmarks) {
+  if (landmarks.empty()) return;
   for (std::size_t k = 0; k < landmarks.size(); ++k) {
     state_->check(landmarks[k], -1);
     for (std::size_t other = 0; other < k; ++other) {

@@ -54,17 +54,23 @@ class DenseSolver final : public NeumannSolver {
   Eigen::MatrixXd refine(const Eigen::MatrixXd& G, SolveSummary& ended, const Inverse& inverse) const {
     const Eigen::RowVectorXd size = G.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
     const Eigen::MatrixXd g = G.array().rowwise() / size.array();
-    Eigen::MatrixXd Y = inverse(g);
+    Eigen::MatrixXd step = inverse(g);
+    Eigen::MatrixXd Y = step;
     ended.residual = std::numeric_limits<double>::infinity();
     constexpr int most_steps = 20;
     for (ended.iterations = 0;; ++ended.iterations) {
       Eigen::MatrixXd r = g;
       lapack::gemm(A_, Y, -1, 1, r);
       const double residual = r.colwise().norm().maxCoeff();
+      if (!(residual < ended.residual)) {  // the last step made it worse
+        Y -= step;
+        break;
+      }
       const bool falls = residual < 0.5 * ended.residual;
-      ended.residual = std::min(residual, ended.residual);
+      ended.residual = residual;
       if (residual <= tolerance_ || !falls || ended.iterations == most_steps) break;
-      Y += inverse(r);
+      step = inverse(r);
+      Y += step;
     }
     return Y.array().rowwise() * size.array();
   }
