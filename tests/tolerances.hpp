@@ -42,4 +42,33 @@ inline constexpr double float_file = 2e-6;
 /// A derivative against central differences of step 1e-3 on a body of size 100.
 inline constexpr double central_difference = 1e-6;
 
+/// Central differences with step 1e-6 in long double: the step's square times the third derivative.
+inline constexpr double finite_difference = 1e-10;
+/// A batch against the scalar kernel, relative to the largest entry of the block: an inverse root by Newton's steps (a
+/// few units of the last place, cubed) and seven Gauss points.
+inline constexpr double batch = 1e-14;
+
+/// H and G of 42 nodes against long double, absolute: entries up to 0.5, from about six element integrals each.
+inline constexpr double reference_matrix = 1e-13;
+/// H of a rigid rotation, H u = G t of a constant strain: N element integrals, each right to some 1e-14.
+inline constexpr double identity = 1e-12;
+/// Order in h expected of the P1 method (2), less what two meshes that are not yet in the asymptotic range may show.
+inline constexpr double observed_order = 1.6;
+
+/// R by Green's functions against the mixed system, and tractions: two factorisations, condition up to some thousand,
+/// integrals to 1e-13 or 1e-12.
+inline constexpr double mixed_system = 1e-10;
+/// The same on a slab of 1:50, whose bending amplifies what H leaves of a rotation.
+inline constexpr double mixed_system_of_a_slab = 1e-8;
+/// R of the same body, moved or renumbered: other roundings and other quadrature rules of tolerance 1e-11.
+inline constexpr double invariance = 1e-10;
+/// Asymmetry of the landmarks' forces on an ellipsoid of 642 vertices.
+inline constexpr double reciprocity = 0.02;
+/// Response of the real leg of 606 vertices against that of 2,000, landmarks of 15 mm: root mean square over the skin.
+inline constexpr double leg_of_2k = 0.15;
+/// A discretisation error that is known to three or four digits.
+inline constexpr double known_error = 0.005;
+/// A field that the method represents exactly, solved for: rounding and quadrature (1e-11) times the condition.
+inline constexpr double neumann_solve = 1e-9;
+
 }  // namespace skinbem::tolerance

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The SIMD panels against the scalar template of panel.hpp.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <random>
+#include <skinbem/kernels/kelvin_batch.hpp>
+
+#include "tolerances.hpp"
+
+namespace skinbem {
+namespace {
+
+/// A kernel that has no batch of its own: calls go to the template.
+struct ScalarKelvin : Kelvin<double> {};
+
+constexpr std::size_t kGaussPoints = 7;
+
+/// A panel of points around a triangle in the plane with normal n, and Gauss points on it.
+struct Scene {
+  PointPanel panel;
+  std::array<double, kGaussPoints> x, y, z, weights[3];
+  Eigen::Vector3d normal;
+
+  explicit Scene(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    normal = Eigen::Vector3d(uniform(random), uniform(random), 1.5).normalized();
+    const Eigen::Vector3d first = normal.unitOrthogonal(), second = normal.cross(first);
+    for (std::size_t q = 0; q < kGaussPoints; ++q) {
+      const Eigen::Vector3d p = 0.2 * (uniform(random) * first + uniform(random) * second);
+      x[q] = p[0];
+      y[q] = p[1];
+      z[q] = p[2];
+      for (auto& w : weights) w[q] = std::abs(uniform(random));
+    }
+    for (std::size_t p = 0; p < kPanel; ++p) {
+      const Eigen::Vector3d away = Eigen::Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
+      const Eigen::Vector3d point = away * std::pow(10, 1 + uniform(random));
+      panel.x[p] = point[0];
+      panel.y[p] = point[1];
+      panel.z[p] = point[2];
+    }
+  }
+  SourcePoints source() const {
+    return {kGaussPoints, x.data(), y.data(), z.data(), {weights[0].data(), weights[1].data(), weights[2].data()}};
+  }
+};
+
+/// Entries of 16 points. Each batch is called twice, since it must add.
+struct alignas(64) Entries {
+  std::array<double, 9 * kPanel> values{};
+};
+
+void expect_same(const Entries& simd, const Entries& scalar, PanelMask mask) {
+  for (std::size_t p = 0; p < kPanel; ++p) {
+    double largest = 0;
+    for (std::size_t e = 0; e < 9; ++e) largest = std::max(largest, std::abs(scalar.values[e * kPanel + p]));
+    for (std::size_t e = 0; e < 9; ++e) {
+      const double a = simd.values[e * kPanel + p], b = scalar.values[e * kPanel + p];
+      if ((mask >> p & 1u) == 0) {
+        ASSERT_EQ(a, 0) << "touched a point that is not in the mask";
+      } else {
+        ASSERT_LE(std::abs(a - b), tolerance::batch * largest) << mask << ' ' << p << ' ' << e;
+      }
+    }
+  }
+}
+
+class KelvinPanel : public ::testing::TestWithParam<double> {
+ protected:
+  Kelvin<double> batch_{GetParam(), 1.5};
+  ScalarKelvin scalar_{{GetParam(), 1.5}};
+};
+
+TEST_P(KelvinPanel, DoubleLayerEqualsTheScalarKernelForEveryMask) {
+  const Scene scene(1);
+  for (PanelMask mask = 0; mask < 1u << kPanel; mask += mask < 256 ? 1 : 251) {
+    Entries a[3], b[3];
+    double* const out_a[3] = {a[0].values.data(), a[1].values.data(), a[2].values.data()};
+    double* const out_b[3] = {b[0].values.data(), b[1].values.data(), b[2].values.data()};
+    for (int twice = 0; twice < 2; ++twice) {
+      add_double_layer(batch_, scene.panel, mask, scene.source(), scene.normal, out_a);
+      add_double_layer(scalar_, scene.panel, mask, scene.source(), scene.normal, out_b);
+    }
+    for (int v = 0; v < 3; ++v) expect_same(a[v], b[v], mask);
+  }
+}
+
+TEST_P(KelvinPanel, SingleLayerEqualsTheScalarKernelForEveryMask) {
+  const Scene scene(2);
+  for (PanelMask mask = 0; mask < 1u << kPanel; mask += mask < 256 ? 1 : 251) {
+    Entries a, b;
+    for (int twice = 0; twice < 2; ++twice) {
+      add_single_layer(batch_, scene.panel, mask, scene.source(), a.values.data());
+      add_single_layer(scalar_, scene.panel, mask, scene.source(), b.values.data());
+    }
+    expect_same(a, b, mask);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Poisson, KelvinPanel, ::testing::Values(-0.5, 0.0, 0.3, 0.45, 0.5));
+
+}  // namespace
+}  // namespace skinbem

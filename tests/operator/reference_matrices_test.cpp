@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <skinbem/operator/collocation.hpp>
+
+#include "files.hpp"
+#include "reference_data.hpp"
+#include "tolerances.hpp"
+
+namespace skinbem {
+namespace {
+
+using testing_support::read_reference_npy;
+using testing_support::read_reference_obj;
+using testing_support::shared_data;
+
+class ReferenceMatrices : public ::testing::TestWithParam<double> {
+ protected:
+  std::filesystem::path file(const std::string& matrix) const {
+    return shared_data("reference/icosphere42_" + matrix + (GetParam() == 0.3 ? "_nu030.npy" : "_nu045.npy"));
+  }
+};
+
+TEST_P(ReferenceMatrices, DoubleLayerEqualsTheReference) {
+  SKINBEM_NEEDS_SHARED_DATA("reference/icosphere42.obj");
+  const Collocation<Kelvin<double>> collocation(read_reference_obj(shared_data("reference/icosphere42.obj")),
+                                                {GetParam(), 1.0}, {1e-13});
+  const Eigen::MatrixXd H = collocation.double_layer_matrix();
+  EXPECT_LE((H - read_reference_npy(file("H"))).cwiseAbs().maxCoeff(), tolerance::reference_matrix);
+}
+
+TEST_P(ReferenceMatrices, SingleLayerEqualsTheReference) {
+  SKINBEM_NEEDS_SHARED_DATA("reference/icosphere42.obj");
+  const Collocation<Kelvin<double>> collocation(read_reference_obj(shared_data("reference/icosphere42.obj")),
+                                                {GetParam(), 1.0}, {1e-13});
+  const Eigen::MatrixXd G = read_reference_npy(file("G"));
+  for (std::int32_t v = 0; v < 42; ++v) {
+    const VertexWeight hat{v, 1.0};
+    const Eigen::MatrixXd columns = collocation.single_layer_columns(std::span(&hat, 1));
+    EXPECT_LE((columns - G.middleCols<3>(3 * v)).cwiseAbs().maxCoeff(), tolerance::reference_matrix) << v;
+  }
+}
+
+TEST_P(ReferenceMatrices, CoarserToleranceIsMetByEveryBlock) {
+  SKINBEM_NEEDS_SHARED_DATA("reference/icosphere42.obj");
+  const Eigen::MatrixXd reference = read_reference_npy(file("H"));
+  for (const double requested : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
+    const Collocation<Kelvin<double>> collocation(read_reference_obj(shared_data("reference/icosphere42.obj")),
+                                                  {GetParam(), 1.0}, {requested});
+    const Eigen::MatrixXd H = collocation.double_layer_matrix();
+    // a block is the sum of some six element integrals, that may cancel in part
+    EXPECT_LE((H - reference).cwiseAbs().maxCoeff(), requested * reference.cwiseAbs().maxCoeff()) << requested;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Poisson, ReferenceMatrices, ::testing::Values(0.3, 0.45));
+
+}  // namespace
+}  // namespace skinbem
