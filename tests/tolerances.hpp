@@ -64,8 +64,6 @@ inline constexpr double mixed_system_of_a_slab = 1e-8;
 inline constexpr double invariance = 1e-10;
 /// Asymmetry of the landmarks' forces on an ellipsoid of 642 vertices.
 inline constexpr double reciprocity = 0.02;
-/// Response of the real leg of 606 vertices against that of 2,000, landmarks of 15 mm: root mean square over the skin.
-inline constexpr double leg_of_2k = 0.15;
 /// A discretisation error that is known to three or four digits.
 inline constexpr double known_error = 0.005;
 /// A field that the method represents exactly, solved for: rounding and quadrature (1e-11) times the condition.

@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <skinbem/mesh/adjacency.hpp>
-#include <skinbem/response/nearest_point.hpp>
 #include <skinbem/response/response_model.hpp>
 
-#include "files.hpp"
-#include "reference_data.hpp"
 #include "response/bodies.hpp"
 #include "tolerances.hpp"
 
@@ -64,39 +61,6 @@ TEST(LandmarkRadius, PatchDoesNotJumpToAnotherSideThatIsNear) {
   ResponseModel model(slab, {0.3, 1e-6, {}});
   model.add(landmarks);
   for (Index k = 0; k < 3; ++k) EXPECT_EQ(model.landmark_positions()(k, 2), 0) << "averages both sides";
-}
-
-/// Largest over the columns of the root mean square difference, at the vertices of the coarse leg, between its response
-/// and that of the fine one at the nearest places, relative to the fine one's root mean square.
-double difference_of_legs(double radius) {
-  const TriangleMesh coarse = read_reference_obj(shared_data("lower_limb/skin.obj"));
-  const TriangleMesh fine = read_reference_obj(shared_data("lower_limb/skin_2k.obj"));
-  const auto rows = read_reference_column(shared_data("lower_limb/landmarks.csv"), "skin_vertex");
-  std::vector<std::int32_t> on_coarse, on_fine;
-  for (const std::string& row : rows) {
-    on_coarse.push_back(std::stoi(row));
-    on_fine.push_back(vertex_at(fine, coarse.vertices.row(on_coarse.back())));
-  }
-  const Eigen::MatrixXd a = response_of(coarse, landmarks_on(on_coarse, radius), 1e-3);
-  const Eigen::MatrixXd b = response_of(fine, landmarks_on(on_fine, radius), 1e-3);
-  Eigen::MatrixXd at_coarse(a.rows(), a.cols());
-  for (Index v = 0; v < coarse.vertex_count(); ++v) {
-    const SurfacePoint p = nearest_point(fine, coarse.vertices.row(v));
-    at_coarse.middleRows<3>(3 * v).setZero();
-    for (int c = 0; c < 3; ++c) {
-      at_coarse.middleRows<3>(3 * v) += p.barycentric[c] * b.middleRows<3>(3 * fine.triangles(p.triangle, c));
-    }
-  }
-  return ((a - at_coarse).colwise().norm().array() / at_coarse.colwise().norm().array()).maxCoeff();
-}
-
-TEST(LandmarkRadius, MakesTheResponseOfTheLegConvergeWherePointLandmarksDoNot) {
-  SKINBEM_NEEDS_SHARED_DATA("lower_limb/skin_2k.obj");
-  const double with_radius = difference_of_legs(15), points = difference_of_legs(0);
-  RecordProperty("with_radius", std::to_string(with_radius));
-  RecordProperty("points", std::to_string(points));
-  EXPECT_LE(with_radius, tolerance::leg_of_2k);
-  EXPECT_LE(2 * with_radius, points);
 }
 
 }  // namespace
