@@ -5,7 +5,8 @@
 /// A rule with the symmetry of the triangle is exact to degree d when it is so for the symmetric polynomials, that is
 /// for the products of e2 = ab + bc + ca and e3 = abc of weighted degree at most d in the barycentric coordinates a, b,
 /// c. From random starts, Levenberg and Marquardt's method in double looks for a solution with all points inside and
-/// all weights positive; Newton's method in quadruple precision polishes it to 30 digits. Takes some minutes.
+/// all weights positive; Newton's method in quadruple precision polishes it to 30 digits. Minutes to degree 12; degree
+/// 13 needs some 100,000 starts.
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
