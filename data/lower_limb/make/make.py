@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the lower limb: skin.obj, bones/*.obj, landmarks.csv, landmarks_with_toes.csv, walk.bvh, jump.bvh, rig.toml.
+"""Makes the lower limb: skin.obj, bones/*.obj, landmarks.csv, landmarks_with_toes.csv, walk.bvh, jump.bvh, rig.toml, rig_with_toes.toml.
 
     python3 make.py [FOLDER]     (default: the folder above this one)
 
@@ -175,20 +175,23 @@ def write_landmarks(path, landmarks, skin_v, bone_meshes):
     path.write_text('\n'.join(rows) + '\n')
 
 
-def rig():
-    """The rig file of both motions."""
+def rig(bending_toes):
+    """The rig file of both motions; the toes are a segment of their own or go with the foot."""
     point = lambda p: '[%.3f, %.3f, %.3f]' % tuple(p)
     knee, ankle = (0.0, *motion.KNEE), (0.0, *motion.ANKLE)
     toe, end = (motion.TOE_X, *motion.TOE), (motion.TOE_X, *motion.TOE_END)
     toes = [n for n in bones.ORDER if n.startswith('phalanx')]
+    foot = [n for n in bones.ORDER if n not in toes + ['tibia', 'fibula']]
     segments = [('shank', '', ['tibia', 'fibula'], knee, ankle, 'RightLeg', 'RightFoot'),
-                ('foot', 'shank', [n for n in bones.ORDER if n not in toes + ['tibia', 'fibula']], ankle, toe, 'RightFoot',
-                 'RightToeBase'),
-                ('toes', 'foot', toes, toe, end, 'RightToeBase', 'RightToeBase.end')]
+                ('foot', 'shank', foot if bending_toes else foot + toes, ankle, toe, 'RightFoot', 'RightToeBase')]
+    if bending_toes:
+        segments += [('toes', 'foot', toes, toe, end, 'RightToeBase', 'RightToeBase.end')]
+    why = ['# The toes bend; for landmarks_with_toes.csv, whose landmarks on the toes take the skin along.'] if bending_toes else [
+        '# The landmarks of landmarks.csv end at the ball of the foot, so bones and skin of the toes go with the foot;',
+        '# rig_with_toes.toml and landmarks_with_toes.csv bend them.']
     lines = ['# SPDX-License-Identifier: BSD-3-Clause',
              '# The lower limb of this folder with walk.bvh or jump.bvh. Written by make/make.py; the keys are described in docs/rig.md.',
-             '# The landmarks of landmarks.csv end at the ball of the foot, so the skin of the toes goes with the foot while their bones',
-             '# bend; landmarks_with_toes.csv holds three more that take the skin along.',
+             *why,
              '', '[mesh]', 'up = "+z"', 'forward = "-y"', 'floor = 0', '', '[motion]', 'format = "bvh"', 'up = "+z"',
              'forward = "-y"', 'scale = 1']
     for name, parent, carried, proximal, distal, joint, next_joint in segments:
@@ -243,7 +246,8 @@ def main():
     write_obj(folder / 'skin.obj', v, t)
     write_landmarks(folder / 'landmarks.csv', bony_landmarks(), v, meshes)
     write_landmarks(folder / 'landmarks_with_toes.csv', bony_landmarks() + toe_landmarks(), v, meshes)
-    (folder / 'rig.toml').write_text(rig())
+    (folder / 'rig.toml').write_text(rig(False))
+    (folder / 'rig_with_toes.toml').write_text(rig(True))
     report(v, t, meshes)
     for name, move in (('walk', motion.walk), ('jump', motion.jump)):
         rows = move(v)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Turns the files of data/lower_limb into embedded_limb.cpp: name and text of each as a raw string.
+set(limb_files skin.obj landmarks.csv landmarks_with_toes.csv rig.toml rig_with_toes.toml walk.bvh jump.bvh)
+set(limb_bones tibia fibula talus calcaneus navicular cuboid cuneiform_medial cuneiform_intermediate cuneiform_lateral)
+foreach(digit RANGE 1 5)
+  list(APPEND limb_bones metatarsal_${digit} phalanx_proximal_${digit} phalanx_distal_${digit})
+  if(digit GREATER 1)
+    list(APPEND limb_bones phalanx_middle_${digit})
+  endif()
+endforeach()
+foreach(bone IN LISTS limb_bones)
+  list(APPEND limb_files bones/${bone}.obj)
+endforeach()
+
+set(embedded "#include \"embedded_limb.hpp\"\n\nconst std::vector<EmbeddedFile>& embedded_limb() {\n")
+string(APPEND embedded "  static const std::vector<EmbeddedFile> files{\n")
+foreach(name IN LISTS limb_files)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${limb}/${name}")
+  file(READ "${limb}/${name}" text)
+  string(APPEND embedded "{\"${name}\", R\"skinbem(${text})skinbem\"},\n")
+endforeach()
+string(APPEND embedded "  };\n  return files;\n}\n")
+file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/embedded_limb.cpp" CONTENT "@embedded@" @ONLY)

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "response_run.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <skinbem/base/error.hpp>
+#include <skinbem/io/npy.hpp>
+#include <skinbem/mesh/adjacency.hpp>
+#include <skinbem/mesh/mesh_io.hpp>
+#include <skinbem/mesh/validate.hpp>
+#include <skinbem/response/landmark_patch.hpp>
+#include <skinbem/response/landmark_table.hpp>
+#include <skinbem/response/response_model.hpp>
+
+#include "console.hpp"
+
+namespace {
+
+using skinbem::Error;
+using skinbem::ErrorCode;
+using skinbem::Index;
+
+void read_inputs(const ResponseRunOptions& options, ResponseRun& run) {
+  run.mesh = skinbem::read_mesh(options.mesh, {options.weld});
+  for (const skinbem::Defect& defect : skinbem::require_body(run.mesh, options.mesh, {options.force}).warnings) {
+    warn(options.mesh + ": " + skinbem::message(defect));
+  }
+  skinbem::LandmarkTable table = skinbem::read_landmarks(options.landmarks, run.mesh, options.radius);
+  for (const skinbem::LandmarkSnap& snap : table.snaps) {
+    warn(fmt::format("{}: landmark {} was taken to vertex {}, {:.3g} from its coordinates", options.landmarks,
+                     snap.name, snap.vertex, snap.distance));
+  }
+  run.landmarks = std::move(table.landmarks);
+}
+
+/// R from a file of an earlier run, for the same mesh and landmarks.
+void read_response(const ResponseRunOptions& options, const std::string& file, ResponseRun& run) {
+  run.response = skinbem::read_npy(file);
+  const Index rows = run.mesh.vertices.size(), columns = 3 * static_cast<Index>(run.landmarks.size());
+  if (run.response.rows() != rows || run.response.cols() != columns) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: is {} by {}, {} and {} need {} by {}: make it anew with `skinbem response`", file,
+                            run.response.rows(), run.response.cols(), options.mesh, options.landmarks, rows, columns));
+  }
+  const skinbem::IndexLists neighbours = skinbem::neighbours_of_vertices(run.mesh);
+  const Eigen::VectorXd areas = skinbem::vertex_areas(run.mesh);
+  run.positions.resize(static_cast<Index>(run.landmarks.size()), 3);
+  for (Index k = 0; k < run.positions.rows(); ++k) {
+    const auto patch = skinbem::make_patch(run.mesh, neighbours, areas, run.landmarks[static_cast<std::size_t>(k)]);
+    run.positions.row(k) = patch.measure(run.mesh.vertices).transpose();
+  }
+}
+
+void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
+  skinbem::ResponseOptions solve;
+  solve.poisson = options.poisson;
+  solve.tolerance = options.tolerance;
+  solve.progress = terminal_progress();
+  solve.validate();
+  skinbem::ResponseModel model(run.mesh, solve);
+  model.add(run.landmarks);
+  run.response = model.response();
+  run.positions = model.landmark_positions();
+  const skinbem::ResponseSummary& summary = model.summary();
+  run.report.estimated_error = summary.estimated_error;
+  run.report.residual = summary.residual;
+  run.report.iterations = summary.iterations;
+  run.report.seconds.assemble = summary.assemble_seconds;
+  run.report.seconds.factor = summary.factor_seconds;
+  run.report.seconds.solve = summary.solve_seconds;
+  end_progress();
+}
+
+}  // namespace
+
+void add_response_options(CLI::App& command, ResponseRunOptions& options) {
+  command.add_option("MESH", options.mesh, "Closed triangle mesh: OBJ, OFF, STL or PLY")->required();
+  command.add_option("--landmarks", options.landmarks, "CSV with name and vertex and/or x,y,z")->required();
+  command.add_option("--poisson", options.poisson, "Poisson's ratio in (-1, 0.5]")->capture_default_str();
+  command.add_option("--radius", options.radius, "Of landmarks whose file gives none, unit of the mesh; 0: a point")
+      ->capture_default_str();
+  command.add_option("--solver", options.solver, "How the equations are solved")
+      ->check(CLI::IsMember({"auto", "dense"}))
+      ->capture_default_str();
+  command.add_option("--tolerance", options.tolerance, "Relative error of the response, 1e-12 to 1e-1")
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "0: as many as there are")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_flag("--weld", options.weld, "Make vertices at equal positions one");
+  command.add_flag("--force", options.force, "Go on where the mesh crosses itself");
+  command.add_flag("--json", options.json, "Print the report as one JSON object");
+}
+
+ResponseRun run_response(const ResponseRunOptions& options, const std::string& response_file) {
+  const Stopwatch total;
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  ResponseRun run;
+  read_inputs(options, run);
+  run.report.seconds.read = total.seconds();
+  if (response_file.empty()) {
+    compute_response(options, run);
+  } else {
+    read_response(options, response_file, run);
+  }
+  skinbem::RunReport& report = run.report;
+  report.version = SKINBEM_VERSION;
+  report.vertices = run.mesh.vertex_count();
+  report.triangles = run.mesh.triangle_count();
+  report.volume = skinbem::volume(run.mesh);
+  report.landmarks = static_cast<int>(run.landmarks.size());
+  report.poisson = options.poisson;
+  report.solver = response_file.empty() ? "dense" : "file";
+  report.tolerance = options.tolerance;
+  report.threads = omp_get_max_threads();
+  report.seconds.total = total.seconds();
+  report.peak_bytes = skinbem::peak_resident_bytes();
+  return run;
+}
