@@ -76,7 +76,9 @@ FrameState::FrameState(const FrameModel& model)
     : model_(&model),
       motion_(BodyMotion::at_rest(model.landmark_count())),
       candidate_(motion_),
-      weights_(static_cast<std::size_t>(motion_.weights.size()), 0.0F) {}
+      weights_(static_cast<std::size_t>(motion_.weights.size()), 0.0F) {
+  repeat_rigid();
+}
 
 bool FrameState::set_landmarks(const Eigen::Ref<const Points>& displacements) noexcept {
   if (displacements.rows() != model_->landmark_count()) return false;
@@ -101,19 +103,23 @@ bool FrameState::accept_candidate() noexcept {
   }
   std::swap(motion_, candidate_);
   for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] = static_cast<float>(motion_.weights[Index(k)]);
+  repeat_rigid();
   return true;
 }
 
-detail::FrameFactors FrameState::factors() const noexcept {
-  detail::FrameFactors factors;
-  factors.weights = weights_.data();
+void FrameState::repeat_rigid() noexcept {
   const Eigen::Matrix3f rotation = motion_.rigid.rotation.cast<float>();
   const Vec3 moved_centre = model_->options_.directions ? Vec3(Vec3::Zero()) : motion_.rigid(model_->centre_);
   const Eigen::Vector3f translation = moved_centre.cast<float>();
   for (Index i = 0; i < Index{detail::FrameFactors::kRepeated}; i += 3) {
-    for (Index j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3f>(factors.rotation[j] + i) = rotation.col(j);
-    Eigen::Map<Eigen::Vector3f>(factors.translation + i) = translation;
+    for (Index j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3f>(factors_.rotation[j] + i) = rotation.col(j);
+    Eigen::Map<Eigen::Vector3f>(factors_.translation + i) = translation;
   }
+}
+
+detail::FrameFactors FrameState::factors() const noexcept {
+  detail::FrameFactors factors = factors_;
+  factors.weights = weights_.data();  // not kept: it would not survive a copy of the state
   return factors;
 }
 
@@ -147,7 +153,7 @@ bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positio
     if (&frame.model() != &model) return false;
   }
   // Few enough that the factors stay on the stack, and a panel in the first-level cache, while all of them use it.
-  constexpr std::size_t kGroup = 32;
+  constexpr std::size_t kGroup = 16;
   std::array<detail::FrameFactors, kGroup> factors;
   std::array<detail::FrameTarget, kGroup> targets;
   for (std::size_t begin = 0; begin < frames.size(); begin += kGroup) {

@@ -120,12 +120,14 @@ class FrameState {
   friend bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
 
   bool accept_candidate() noexcept;
+  void repeat_rigid() noexcept;
   detail::FrameFactors factors() const noexcept;
 
   const FrameModel* model_;
   BodyMotion motion_;
   BodyMotion candidate_;
   detail::AlignedVector<float> weights_;
+  detail::FrameFactors factors_;  ///< of motion_.rigid
 };
 
 /// Many frames, or many characters, of one model as a matrix product: R is read once for all of them. Frame f goes to

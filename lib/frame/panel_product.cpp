@@ -13,7 +13,6 @@
 #define HWY_TARGET_INCLUDE "skinbem/frame/panel_product.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes first
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -63,14 +62,9 @@ HWY_INLINE Vector numbers(const std::int32_t* HWY_RESTRICT column, std::size_t i
   return hn::ConvertTo(Tag(), v < B::kVectors / 2 ? hn::ShiftLeft<16>(word) : word);
 }
 
-/// The stream is asked for this many bytes ahead, so that it does not pause while a panel is stored; past its end a
-/// prefetch does nothing.
-constexpr std::size_t kPrefetchDistance = 2048;
-
 /// What a panel's columns are: floats in order, or words with a list of which and how large.
 struct FloatColumns {
   static constexpr std::size_t kStep = kColumnNumbers;
-  static constexpr std::size_t kLines = kColumnNumbers * sizeof(float) / 64;
   const float* column;
 
   FloatColumns(const std::byte* panel, std::size_t) : column(reinterpret_cast<const float*>(panel + kRestBytes)) {}
@@ -79,7 +73,6 @@ struct FloatColumns {
 
 struct QuantisedColumns {
   static constexpr std::size_t kStep = kColumnNumbers / 2;
-  static constexpr std::size_t kLines = kQuantisedColumnBytes / 64;
   const std::uint32_t* which;
   const float* scale;
   const std::int32_t* column;
@@ -109,11 +102,10 @@ HWY_INLINE void move_and_store(Vector x, Vector y, Vector z, const FrameFactors&
   Vector position[3];
   for (std::size_t m = 0; m < 3; ++m) {
     const auto lane_vertices = hn::SetTableIndices(d, kLaneVertices.data() + m * kLanes);
-    const std::size_t phase = m * kLanes % 3;
-    Vector sum = hn::LoadU(d, frame.translation + phase);
-    sum = hn::MulAdd(hn::LoadU(d, frame.rotation[0] + phase), hn::TableLookupLanes(x, lane_vertices), sum);
-    sum = hn::MulAdd(hn::LoadU(d, frame.rotation[1] + phase), hn::TableLookupLanes(y, lane_vertices), sum);
-    position[m] = hn::MulAdd(hn::LoadU(d, frame.rotation[2] + phase), hn::TableLookupLanes(z, lane_vertices), sum);
+    Vector sum = hn::Load(d, frame.translation + m * kLanes);
+    sum = hn::MulAdd(hn::Load(d, frame.rotation[0] + m * kLanes), hn::TableLookupLanes(x, lane_vertices), sum);
+    sum = hn::MulAdd(hn::Load(d, frame.rotation[1] + m * kLanes), hn::TableLookupLanes(y, lane_vertices), sum);
+    position[m] = hn::MulAdd(hn::Load(d, frame.rotation[2] + m * kLanes), hn::TableLookupLanes(z, lane_vertices), sum);
   }
   const std::size_t count = std::min(kLanes, vertices - vertex);
   float* to = target.data + vertex * target.stride;
@@ -133,8 +125,7 @@ template <class B, class Columns, std::size_t... kSum, std::size_t... kFrame, st
           std::size_t... kLine>
 HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std::size_t shift,
                                const FrameFactors* frames, const FrameTarget* targets, std::index_sequence<kSum...>,
-                               std::index_sequence<kFrame...>, std::index_sequence<kPosition...>,
-                               std::index_sequence<kLine...>) {
+                               std::index_sequence<kFrame...>, std::index_sequence<kPosition...>) {
   const std::byte* data = matrix.data + matrix.places[panel].offset;
   const std::size_t entries = matrix.places[panel].entries;
   const Columns columns(data, entries);
@@ -142,7 +133,6 @@ HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std
   Vector sum[] = {numbers<B>(reinterpret_cast<const float*>(data) + shift, kSum)...};
   for (std::size_t k = 0; k < entries; ++k, column += Columns::kStep) {
     const Vector weight[] = {hn::Set(Tag(), columns.weight(frames[kFrame], k))...};
-    (hwy::Prefetch(reinterpret_cast<const std::byte*>(column) + kPrefetchDistance + 64 * kLine), ...);
     ((sum[kSum] = hn::MulAdd(numbers<B>(column, kSum), weight[B::frame(kSum)], sum[kSum])), ...);
   }
   const std::size_t first = panel * kPanelWidth + shift;
@@ -159,8 +149,7 @@ HWY_INLINE void evaluate_panel(const PanelMatrix& matrix, std::size_t panel, con
   for (std::size_t shift = 0; shift < kHalfPanel; shift += B::kVertices) {
     evaluate_block<B, Columns>(matrix, panel, shift, frames, targets, std::make_index_sequence<B::kSums>(),
                                std::make_index_sequence<B::kFrames>(),
-                               std::make_index_sequence<B::kFrames * B::kVectors>(),
-                               std::make_index_sequence<Columns::kLines>());
+                               std::make_index_sequence<B::kFrames * B::kVectors>());
   }
 }
 

@@ -49,14 +49,14 @@ constexpr std::size_t entry_list_bytes(std::size_t entries) {
   return padded_to_line(entries * (sizeof(std::uint32_t) + sizeof(float)));
 }
 
-/// What changes from frame to frame. Rotation and translation are repeated, so that a vector load at any phase gives
-/// each lane of interleaved coordinates its own row.
+/// What changes from frame to frame. Rotation and translation are repeated for 16 vertices, so that an aligned vector
+/// load gives each lane of interleaved coordinates its own row.
 struct FrameFactors {
-  static constexpr std::size_t kRepeated = 18;  ///< a vector of 16 lanes and a phase of 2
+  static constexpr std::size_t kRepeated = 3 * kHalfPanel;
 
-  const float* weights = nullptr;  ///< q, one a column
-  float rotation[3][kRepeated];    ///< rotation[j][i] = Q(i mod 3, j)
-  float translation[kRepeated];    ///< t(i mod 3)
+  const float* weights = nullptr;            ///< q, one a column
+  alignas(64) float rotation[3][kRepeated];  ///< rotation[j][i] = Q(i mod 3, j)
+  alignas(64) float translation[kRepeated];  ///< t(i mod 3)
 };
 
 /// Where a frame goes: position i is written to data[i * stride + 0, 1, 2].
