@@ -7,19 +7,40 @@
 #include <new>
 #include <vector>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace skinbem::detail {
 
-/// Allocator of std::vector for storage that begins on a cache line.
+inline constexpr std::size_t kHugePage = std::size_t{1} << 21;
+inline constexpr std::size_t kHugeFrom = 4 * kHugePage;
+
+/// Asks for huge pages where the storage is large and the system has them: a stream through it then misses fewer
+/// translations. No more than a wish.
+inline void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
+#ifdef __linux__
+  if (bytes >= kHugeFrom) madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+}
+
+/// Allocator of std::vector for storage that begins on a cache line, or on a huge page where it fills some.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
-  static constexpr std::align_val_t alignment{64};
 
   CacheLineAllocator() = default;
   template <class U>
   CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
+  T* allocate(std::size_t n) {
+    void* memory = ::operator new(n * sizeof(T), alignment(n));
+    prefer_huge_pages(memory, n * sizeof(T));
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* p, std::size_t n) noexcept { ::operator delete(p, alignment(n)); }
+  static constexpr std::align_val_t alignment(std::size_t n) {
+    return std::align_val_t{n * sizeof(T) >= kHugeFrom ? kHugePage : 64};
+  }
   friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) noexcept { return true; }
 };
 
