@@ -15,49 +15,75 @@ namespace skinbem {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<double, kPanel>;
-using V = hn::Vec<D>;
+using D64 = hn::CappedTag<double, kPanel>;
+using D32 = hn::CappedTag<float, kPanel>;
+using V64 = hn::Vec<D64>;
+using V32 = hn::Vec<D32>;
 
+template <class D>
 HWY_INLINE hn::Mask<D> mask_of(D d, PanelMask lanes) {
   const std::uint8_t bits[8] = {static_cast<std::uint8_t>(lanes), static_cast<std::uint8_t>(lanes >> 8)};
   return hn::LoadMaskBits(d, bits);
 }
 
-HWY_INLINE void add(D d, hn::Mask<D> mask, V value, double* HWY_RESTRICT out) {
+/// Adds the lanes of the mask to sums in double.
+HWY_INLINE void add(D64 d, hn::Mask<D64> mask, V64 value, double* HWY_RESTRICT out) {
   hn::Store(hn::Add(hn::Load(d, out), hn::IfThenElseZero(mask, value)), d, out);
 }
 
-/// 1/sqrt(r2) to a few units of the last place: the hardware's 12 bits, a third-order step (36 bits) and a second-order
-/// one. Half the time of a square root and a division. r2 must lie in the range of float.
-HWY_INLINE V inverse_root(D d, V r2) {
-  const hn::Rebind<float, D> f;
-  V y = hn::PromoteTo(d, hn::ApproximateReciprocalSqrt(hn::DemoteTo(f, r2)));
-  const V one = hn::Set(d, 1.0);
-  V e = hn::NegMulAdd(hn::Mul(r2, y), y, one);
+HWY_INLINE void add(D32 d, hn::Mask<D32> mask, V32 value, double* HWY_RESTRICT out) {
+  alignas(64) float kept[kPanel];
+  hn::Store(hn::IfThenElseZero(mask, value), d, kept);
+  const hn::Rebind<float, D64> half;  // as many floats as a vector of double takes
+  const D64 wide;
+  for (std::size_t lane = 0; lane < hn::Lanes(d); lane += hn::Lanes(wide)) {
+    hn::Store(hn::Add(hn::Load(wide, out + lane), hn::PromoteTo(wide, hn::Load(half, kept + lane))), wide, out + lane);
+  }
+}
+
+/// 1/sqrt(r2) to a few units of the last place, in half the time of a square root and a division: the hardware's 12
+/// bits, then in double a third-order step (36 bits) and a second-order one, in float the latter alone. In double r2
+/// must lie in the range of float.
+HWY_INLINE V64 inverse_root(D64 d, V64 r2) {
+  const hn::Rebind<float, D64> f;
+  V64 y = hn::PromoteTo(d, hn::ApproximateReciprocalSqrt(hn::DemoteTo(f, r2)));
+  const V64 one = hn::Set(d, 1.0);
+  V64 e = hn::NegMulAdd(hn::Mul(r2, y), y, one);
   y = hn::MulAdd(hn::Mul(y, e), hn::MulAdd(e, hn::Set(d, 0.375), hn::Set(d, 0.5)), y);
   e = hn::NegMulAdd(hn::Mul(r2, y), y, one);
   return hn::MulAdd(hn::Mul(y, e), hn::Set(d, 0.5), y);
 }
 
+HWY_INLINE V32 inverse_root(D32 d, V32 r2) {
+  const V32 y = hn::ApproximateReciprocalSqrt(r2);
+  const V32 e = hn::NegMulAdd(hn::Mul(r2, y), y, hn::Set(d, 1.0f));
+  return hn::MulAdd(hn::Mul(y, e), hn::Set(d, 0.5f), y);
+}
+
 /// The sums over the Gauss points against one hat function: w r / r^3 and w r r^T / r^5.
+template <class V>
 struct Sums {
   V x, y, z, xx, xy, xz, yy, yz, zz;
 };
 
-HWY_INLINE Sums zero(D d) {
-  const V o = hn::Zero(d);
+template <class D>
+HWY_INLINE Sums<hn::Vec<D>> zero(D d) {
+  const auto o = hn::Zero(d);
   return {o, o, o, o, o, o, o, o, o};
 }
 
 /// From the moments to the three by three entries (see Kelvin::double_layer_integral), added to `out`.
+template <class D, class V = hn::Vec<D>>
 HWY_INLINE void add_traction(D d, hn::Mask<D> mask, const Kelvin<double>& kernel, const double* normal, V height,
-                             const Sums& s, double* HWY_RESTRICT out) {
+                             const Sums<V>& s, double* HWY_RESTRICT out) {
+  using T = hn::TFromD<D>;
   const double c = kernel.double_layer_factor();
-  const V slip = hn::Set(d, c * (1 - 2 * kernel.poisson));
-  const V nx = hn::Mul(slip, hn::Set(d, normal[0]));
-  const V ny = hn::Mul(slip, hn::Set(d, normal[1]));
-  const V nz = hn::Mul(slip, hn::Set(d, normal[2]));
-  const V h3 = hn::Mul(height, hn::Set(d, -3 * c));
+  const double slip_factor = c * (1 - 2 * kernel.poisson);
+  const V nx = hn::Set(d, static_cast<T>(slip_factor * normal[0]));
+  const V ny = hn::Set(d, static_cast<T>(slip_factor * normal[1]));
+  const V nz = hn::Set(d, static_cast<T>(slip_factor * normal[2]));
+  const V h3 = hn::Mul(height, hn::Set(d, static_cast<T>(-3 * c)));
+  const V slip = hn::Set(d, static_cast<T>(slip_factor));
   const V isotropic = hn::Mul(hn::Mul(height, slip), hn::Add(hn::Add(s.xx, s.yy), s.zz));
   const V skew_xy = hn::MulSub(s.x, ny, hn::Mul(s.y, nx));
   const V skew_xz = hn::MulSub(s.x, nz, hn::Mul(s.z, nx));
@@ -73,25 +99,29 @@ HWY_INLINE void add_traction(D d, hn::Mask<D> mask, const Kelvin<double>& kernel
   add(d, mask, hn::MulSub(h3, s.zz, isotropic), out + 8 * kPanel);
 }
 
-void double_layer_of_vector(const Kelvin<double>& kernel, const PointPanel& panel, std::size_t first, PanelMask lanes,
-                            const SourcePoints& source, const double* HWY_RESTRICT normal, double* const* out) {
-  const D d;
-  const V x = hn::Load(d, panel.x + first);
-  const V y = hn::Load(d, panel.y + first);
-  const V z = hn::Load(d, panel.z + first);
-  Sums a = zero(d), b = zero(d), c = zero(d);
-  for (std::size_t q = 0; q < source.count; ++q) {
-    const V rx = hn::Sub(hn::Set(d, source.x[q]), x);
-    const V ry = hn::Sub(hn::Set(d, source.y[q]), y);
-    const V rz = hn::Sub(hn::Set(d, source.z[q]), z);
+/// Coordinates of one vector of field points; any common origin.
+template <class V>
+struct Field {
+  V x, y, z;
+};
+
+template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE void double_layer_of_vector(D d, const Kelvin<double>& kernel, const Field<V>& at, PanelMask lanes,
+                                       std::size_t count, const T* HWY_RESTRICT const* source,
+                                       const double* HWY_RESTRICT normal, double* const* out) {
+  Sums<V> a = zero(d), b = zero(d), c = zero(d);
+  for (std::size_t q = 0; q < count; ++q) {
+    const V rx = hn::Sub(hn::Set(d, source[0][q]), at.x);
+    const V ry = hn::Sub(hn::Set(d, source[1][q]), at.y);
+    const V rz = hn::Sub(hn::Set(d, source[2][q]), at.z);
     const V r2 = hn::MulAdd(rz, rz, hn::MulAdd(ry, ry, hn::Mul(rx, rx)));
     const V r1 = inverse_root(d, r2);
     const V r_2 = hn::Mul(r1, r1);
     const V r3 = hn::Mul(r1, r_2);
-    const V wa = hn::Set(d, source.weights[0][q]);
-    const V wb = hn::Set(d, source.weights[1][q]);
-    const V wc = hn::Set(d, source.weights[2][q]);
-    const auto spread = [&](V value, V Sums::*member) HWY_ATTR {
+    const V wa = hn::Set(d, source[3][q]);
+    const V wb = hn::Set(d, source[4][q]);
+    const V wc = hn::Set(d, source[5][q]);
+    const auto spread = [&](V value, V Sums<V>::*member) HWY_ATTR {
       a.*member = hn::MulAdd(wa, value, a.*member);
       b.*member = hn::MulAdd(wb, value, b.*member);
       c.*member = hn::MulAdd(wc, value, c.*member);
@@ -99,73 +129,33 @@ void double_layer_of_vector(const Kelvin<double>& kernel, const PointPanel& pane
     const V vx = hn::Mul(rx, r3);
     const V vy = hn::Mul(ry, r3);
     const V vz = hn::Mul(rz, r3);
-    spread(vx, &Sums::x);
-    spread(vy, &Sums::y);
-    spread(vz, &Sums::z);
+    spread(vx, &Sums<V>::x);
+    spread(vy, &Sums<V>::y);
+    spread(vz, &Sums<V>::z);
     const V px = hn::Mul(vx, r_2);
     const V py = hn::Mul(vy, r_2);
-    spread(hn::Mul(px, rx), &Sums::xx);
-    spread(hn::Mul(px, ry), &Sums::xy);
-    spread(hn::Mul(px, rz), &Sums::xz);
-    spread(hn::Mul(py, ry), &Sums::yy);
-    spread(hn::Mul(py, rz), &Sums::yz);
-    spread(hn::Mul(hn::Mul(vz, r_2), rz), &Sums::zz);
+    spread(hn::Mul(px, rx), &Sums<V>::xx);
+    spread(hn::Mul(px, ry), &Sums<V>::xy);
+    spread(hn::Mul(px, rz), &Sums<V>::xz);
+    spread(hn::Mul(py, ry), &Sums<V>::yy);
+    spread(hn::Mul(py, rz), &Sums<V>::yz);
+    spread(hn::Mul(hn::Mul(vz, r_2), rz), &Sums<V>::zz);
   }
   // the height (y - x).n is the same for every y of the triangle
-  const V height = hn::MulAdd(hn::Sub(hn::Set(d, source.z[0]), z), hn::Set(d, normal[2]),
-                              hn::MulAdd(hn::Sub(hn::Set(d, source.y[0]), y), hn::Set(d, normal[1]),
-                                         hn::Mul(hn::Sub(hn::Set(d, source.x[0]), x), hn::Set(d, normal[0]))));
+  const auto component = [&](int k) HWY_ATTR { return hn::Set(d, static_cast<T>(normal[k])); };
+  const V height = hn::MulAdd(hn::Sub(hn::Set(d, source[2][0]), at.z), component(2),
+                              hn::MulAdd(hn::Sub(hn::Set(d, source[1][0]), at.y), component(1),
+                                         hn::Mul(hn::Sub(hn::Set(d, source[0][0]), at.x), component(0))));
   const auto mask = mask_of(d, lanes);
-  add_traction(d, mask, kernel, normal, height, a, out[0] + first);
-  add_traction(d, mask, kernel, normal, height, b, out[1] + first);
-  add_traction(d, mask, kernel, normal, height, c, out[2] + first);
-}
-
-void single_layer_of_vector(const Kelvin<double>& kernel, const PointPanel& panel, std::size_t first, PanelMask lanes,
-                            const SourcePoints& source, double* HWY_RESTRICT out) {
-  const D d;
-  const V x = hn::Load(d, panel.x + first);
-  const V y = hn::Load(d, panel.y + first);
-  const V z = hn::Load(d, panel.z + first);
-  V xx = hn::Zero(d), xy = xx, xz = xx, yy = xx, yz = xx, zz = xx;
-  for (std::size_t q = 0; q < source.count; ++q) {
-    const V rx = hn::Sub(hn::Set(d, source.x[q]), x);
-    const V ry = hn::Sub(hn::Set(d, source.y[q]), y);
-    const V rz = hn::Sub(hn::Set(d, source.z[q]), z);
-    const V r2 = hn::MulAdd(rz, rz, hn::MulAdd(ry, ry, hn::Mul(rx, rx)));
-    const V r1 = inverse_root(d, r2);
-    const V w = hn::Set(d, source.weights[0][q] + source.weights[1][q] + source.weights[2][q]);
-    const V w3 = hn::Mul(hn::Mul(w, r1), hn::Mul(r1, r1));
-    const V px = hn::Mul(w3, rx);
-    const V py = hn::Mul(w3, ry);
-    xx = hn::MulAdd(px, rx, xx);
-    xy = hn::MulAdd(px, ry, xy);
-    xz = hn::MulAdd(px, rz, xz);
-    yy = hn::MulAdd(py, ry, yy);
-    yz = hn::MulAdd(py, rz, yz);
-    zz = hn::MulAdd(hn::Mul(w3, rz), rz, zz);
-  }
-  const double c = kernel.single_layer_factor();
-  const V factor = hn::Set(d, c);
-  // the trace of w r r^T / r^3 is w / r
-  const V isotropic = hn::Mul(hn::Add(hn::Add(xx, yy), zz), hn::Set(d, c * (3 - 4 * kernel.poisson)));
-  const auto mask = mask_of(d, lanes);
-  out += first;
-  add(d, mask, hn::MulAdd(xx, factor, isotropic), out + 0 * kPanel);
-  add(d, mask, hn::Mul(xy, factor), out + 1 * kPanel);
-  add(d, mask, hn::Mul(xz, factor), out + 2 * kPanel);
-  add(d, mask, hn::Mul(xy, factor), out + 3 * kPanel);
-  add(d, mask, hn::MulAdd(yy, factor, isotropic), out + 4 * kPanel);
-  add(d, mask, hn::Mul(yz, factor), out + 5 * kPanel);
-  add(d, mask, hn::Mul(xz, factor), out + 6 * kPanel);
-  add(d, mask, hn::Mul(yz, factor), out + 7 * kPanel);
-  add(d, mask, hn::MulAdd(zz, factor, isotropic), out + 8 * kPanel);
+  add_traction(d, mask, kernel, normal, height, a, out[0]);
+  add_traction(d, mask, kernel, normal, height, b, out[1]);
+  add_traction(d, mask, kernel, normal, height, c, out[2]);
 }
 
 /// Calls f(first, lanes) for each vector of the panel that has a point in the mask; bit 0 of lanes is point `first`.
-template <class F>
-HWY_INLINE void for_each_vector(PanelMask mask, F f) {
-  const std::size_t step = hn::Lanes(D());
+template <class D, class F>
+HWY_INLINE void for_each_vector(D d, PanelMask mask, F f) {
+  const std::size_t step = hn::Lanes(d);
   for (std::size_t first = 0; first < kPanel; first += step) {
     const PanelMask lanes = (mask >> first) & ((1u << step) - 1u);
     if (lanes != 0) f(first, lanes);
@@ -174,14 +164,83 @@ HWY_INLINE void for_each_vector(PanelMask mask, F f) {
 
 void double_layer_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask,
                            const SourcePoints& source, const double* normal, double* const* out) {
-  for_each_vector(mask, [&](std::size_t first, PanelMask lanes)
-                            HWY_ATTR { double_layer_of_vector(kernel, panel, first, lanes, source, normal, out); });
+  const D64 d;
+  const double* const sources[6] = {source.x,          source.y,          source.z,
+                                    source.weights[0], source.weights[1], source.weights[2]};
+  for_each_vector(d, mask, [&](std::size_t first, PanelMask lanes) HWY_ATTR {
+    const Field<hn::Vec<D64>> at = {hn::Load(d, panel.x + first), hn::Load(d, panel.y + first),
+                                    hn::Load(d, panel.z + first)};
+    double* const shifted[3] = {out[0] + first, out[1] + first, out[2] + first};
+    double_layer_of_vector(d, kernel, at, lanes, source.count, sources, normal, shifted);
+  });
+}
+
+/// In single precision relative to the first Gauss point, so that only r is rounded, not the position in space.
+void double_layer_of_panel_f32(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask,
+                               const SourcePoints& source, const double* normal, double* const* out) {
+  const D32 d;
+  alignas(64) float local[6][kMostSinglePoints];
+  alignas(64) float at[3][kPanel];
+  const double origin[3] = {source.x[0], source.y[0], source.z[0]};
+  const double* const points[3] = {source.x, source.y, source.z};
+  const double* const field[3] = {panel.x, panel.y, panel.z};
+  const float* const sources[6] = {local[0], local[1], local[2], local[3], local[4], local[5]};
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t q = 0; q < source.count; ++q) {
+      local[k][q] = static_cast<float>(points[k][q] - origin[k]);
+      local[3 + k][q] = static_cast<float>(source.weights[k][q]);
+    }
+    for (std::size_t p = 0; p < kPanel; ++p) at[k][p] = static_cast<float>(field[k][p] - origin[k]);
+  }
+  for_each_vector(d, mask, [&](std::size_t first, PanelMask lanes) HWY_ATTR {
+    const Field<hn::Vec<D32>> x = {hn::Load(d, at[0] + first), hn::Load(d, at[1] + first), hn::Load(d, at[2] + first)};
+    double* const shifted[3] = {out[0] + first, out[1] + first, out[2] + first};
+    double_layer_of_vector(d, kernel, x, lanes, source.count, sources, normal, shifted);
+  });
 }
 
 void single_layer_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask,
-                           const SourcePoints& source, double* out) {
-  for_each_vector(mask, [&](std::size_t first, PanelMask lanes)
-                            HWY_ATTR { single_layer_of_vector(kernel, panel, first, lanes, source, out); });
+                           const SourcePoints& source, double* out_of_panel) {
+  const D64 d;
+  using V = hn::Vec<D64>;
+  for_each_vector(d, mask, [&](std::size_t first, PanelMask lanes) HWY_ATTR {
+    const V x = hn::Load(d, panel.x + first);
+    const V y = hn::Load(d, panel.y + first);
+    const V z = hn::Load(d, panel.z + first);
+    V xx = hn::Zero(d), xy = xx, xz = xx, yy = xx, yz = xx, zz = xx;
+    for (std::size_t q = 0; q < source.count; ++q) {
+      const V rx = hn::Sub(hn::Set(d, source.x[q]), x);
+      const V ry = hn::Sub(hn::Set(d, source.y[q]), y);
+      const V rz = hn::Sub(hn::Set(d, source.z[q]), z);
+      const V r2 = hn::MulAdd(rz, rz, hn::MulAdd(ry, ry, hn::Mul(rx, rx)));
+      const V r1 = inverse_root(d, r2);
+      const V w = hn::Set(d, source.weights[0][q] + source.weights[1][q] + source.weights[2][q]);
+      const V w3 = hn::Mul(hn::Mul(w, r1), hn::Mul(r1, r1));
+      const V px = hn::Mul(w3, rx);
+      const V py = hn::Mul(w3, ry);
+      xx = hn::MulAdd(px, rx, xx);
+      xy = hn::MulAdd(px, ry, xy);
+      xz = hn::MulAdd(px, rz, xz);
+      yy = hn::MulAdd(py, ry, yy);
+      yz = hn::MulAdd(py, rz, yz);
+      zz = hn::MulAdd(hn::Mul(w3, rz), rz, zz);
+    }
+    const double c = kernel.single_layer_factor();
+    const V factor = hn::Set(d, c);
+    // the trace of w r r^T / r^3 is w / r
+    const V isotropic = hn::Mul(hn::Add(hn::Add(xx, yy), zz), hn::Set(d, c * (3 - 4 * kernel.poisson)));
+    const auto used = mask_of(d, lanes);
+    double* HWY_RESTRICT out = out_of_panel + first;
+    add(d, used, hn::MulAdd(xx, factor, isotropic), out + 0 * kPanel);
+    add(d, used, hn::Mul(xy, factor), out + 1 * kPanel);
+    add(d, used, hn::Mul(xz, factor), out + 2 * kPanel);
+    add(d, used, hn::Mul(xy, factor), out + 3 * kPanel);
+    add(d, used, hn::MulAdd(yy, factor, isotropic), out + 4 * kPanel);
+    add(d, used, hn::Mul(yz, factor), out + 5 * kPanel);
+    add(d, used, hn::Mul(xz, factor), out + 6 * kPanel);
+    add(d, used, hn::Mul(yz, factor), out + 7 * kPanel);
+    add(d, used, hn::MulAdd(zz, factor, isotropic), out + 8 * kPanel);
+  });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -192,11 +251,16 @@ HWY_AFTER_NAMESPACE();
 namespace skinbem {
 
 HWY_EXPORT(double_layer_of_panel);
+HWY_EXPORT(double_layer_of_panel_f32);
 HWY_EXPORT(single_layer_of_panel);
 
 void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
-                      const Eigen::Vector3d& n, double* const out[3]) {
-  HWY_DYNAMIC_DISPATCH(double_layer_of_panel)(kernel, panel, mask, source, n.data(), out);
+                      const Eigen::Vector3d& n, double* const out[3], Precision precision) {
+  if (precision == Precision::float32 && source.count <= kMostSinglePoints) {
+    HWY_DYNAMIC_DISPATCH(double_layer_of_panel_f32)(kernel, panel, mask, source, n.data(), out);
+  } else {
+    HWY_DYNAMIC_DISPATCH(double_layer_of_panel)(kernel, panel, mask, source, n.data(), out);
+  }
 }
 
 void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,

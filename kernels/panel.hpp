@@ -26,6 +26,12 @@ struct PointPanel {
   Eigen::Vector3d point(std::size_t p) const { return {x[p], y[p], z[p]}; }
 };
 
+/// Arithmetic of a batch; sums are always in double.
+enum class Precision {
+  float64,
+  float32,  ///< errors of some 1e-6 of the largest entry
+};
+
 /// Gauss points of one flat triangle; #count each.
 struct SourcePoints {
   std::size_t count;
@@ -36,10 +42,11 @@ struct SourcePoints {
 };
 
 /// Adds int N_v T_ij dS at the points of `mask` to out[v][(components i + j) kPanel + p], v = 0, 1, 2; n is the
-/// triangle's unit normal. Each out[v] is aligned to 64 bytes.
+/// triangle's unit normal. Each out[v] is aligned to 64 bytes. float32 is a permission, which this version does not
+/// use.
 template <class Kernel>
 void add_double_layer(const Kernel& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
-                      const Eigen::Vector3d& n, double* const out[3]) {
+                      const Eigen::Vector3d& n, double* const out[3], Precision = Precision::float64) {
   for (; mask != 0; mask &= mask - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(mask));
     for (std::size_t q = 0; q < source.count; ++q) {

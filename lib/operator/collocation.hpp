@@ -10,6 +10,7 @@
 #include <skinbem/base/progress.hpp>
 #include <skinbem/kernels/kelvin.hpp>
 #include <skinbem/kernels/laplace.hpp>
+#include <skinbem/kernels/panel.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
 #include <skinbem/operator/element_integral.hpp>
 
@@ -76,6 +77,7 @@ class Collocation {
   std::vector<std::int32_t> order_;  ///< vertices along a space-filling curve
   double scale_;  ///< a power of two, so that scaling is exact: the kernels' batches work near unit length
   ElementIntegral<Kernel> integral_;
+  Precision precision_;  ///< of the far pairs: float where the tolerance is at least ten times its error
 };
 
 extern template class Collocation<Kelvin<double>>;

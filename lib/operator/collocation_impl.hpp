@@ -200,7 +200,9 @@ void Collocation<Kernel>::for_each_panel(const Progress& progress, std::string_v
 
 template <class Kernel>
 Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options)
-    : scale_(detail::power_of_two_scale(mesh)), integral_(kernel, options.tolerance) {
+    : scale_(detail::power_of_two_scale(mesh)),
+      integral_(kernel, options.tolerance),
+      precision_(options.tolerance >= 1e-5 ? Precision::float32 : Precision::float64) {
   vertices_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;
   triangles_.resize(mesh.triangle_count());
@@ -278,7 +280,7 @@ void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, ColumnBlock&
   for (const auto& far : split.far) {
     if (far.mask == 0) continue;
     const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, {1, 1, 1});
-    add_double_layer(integral_.kernel(), panel.points, far.mask, points, triangle.geometry.normal, out);
+    add_double_layer(integral_.kernel(), panel.points, far.mask, points, triangle.geometry.normal, out, precision_);
   }
   for (PanelMask near = split.near; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
