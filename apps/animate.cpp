@@ -9,6 +9,7 @@
 #include "animation_run.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "option_values.hpp"
 
 namespace {
 
@@ -35,7 +36,9 @@ void warn_of_fine_points(const ResponseRun& run) {
 }
 
 void run_animate(const Options& options) {
-  require_output(options.output);
+  require_output(options.output,
+                 {options.response.mesh, options.response.landmarks, options.response_file, options.animation.motion,
+                  options.animation.rig, options.animation.fine_skin, options.animation.bones});
   const ResponseRun run = run_response(options.response, options.response_file);
   warn_of_fine_points(run);
   const Animation animation = animate(run, options.animation);
@@ -70,18 +73,22 @@ void add_motion_options(CLI::App& command, AnimationOptions& a) {
   command.add_option("--motion", a.motion, "BVH or TRC file")->required();
   command.add_option("--rig", a.rig, "TOML file: which bones and landmarks move with what in the motion")->required();
   command.add_option("--mode", a.mode, "follow (default), literal (the paper's equation 4) or markers")
-      ->transform(CLI::Transformer(modes))
+      ->transform(word(modes))
       ->option_text("MODE");
   command.add_option("--frame", a.frame, "corotated (default) or linear (the paper's)")
-      ->transform(CLI::Transformer(frames))
+      ->transform(word(frames))
       ->option_text("KIND");
   command.add_option("--artefact", a.artefact.kind, "Sliding of the skin: none (default), trial, correlated or frame")
-      ->transform(CLI::Transformer(artefacts))
+      ->transform(word(artefacts))
       ->option_text("KIND");
   command.add_option("--artefact-mean", a.artefact.mean, "Unit of the mesh")->capture_default_str();
   command.add_option("--artefact-sigma", a.artefact.sigma, "Unit of the mesh")->capture_default_str();
-  command.add_option("--seed", a.artefact.seed, "Of the artefact")->capture_default_str();
-  command.add_option("--fps", a.fps, "Frames a second; that of the motion when not given")->check(CLI::PositiveNumber);
+  command.add_option("--seed", a.artefact.seed, "Of the artefact")
+      ->check(
+          number([](double value) { return value >= 0 && value == std::floor(value); }, "a whole number, zero or more"))
+      ->capture_default_str();
+  command.add_option("--fps", a.fps, "Frames a second; that of the motion when not given")
+      ->check(number([](double value) { return value > 0; }, "a positive number"));
   command.add_option("--from", a.from, "Seconds of the motion file");
   command.add_option("--to", a.to, "Seconds of the motion file");
   command.add_option("--skin", a.fine_skin, "A finer skin of the same body, driven by the response of MESH");

@@ -92,13 +92,13 @@ Animation animate(const ResponseRun& run, const AnimationOptions& options) {
   return animation;
 }
 
-void require_output(const std::string& output) {
+void require_output(const std::string& output, const std::vector<std::string>& inputs) {
   const fs::path path(output);
   const std::string end = path.extension().string();
   if (path.has_filename() && !end.empty() && end != ".glb" && end != ".pvd") {
     throw Error(ErrorCode::usage, output + ": unknown kind of output, name a .glb, a .pvd or a folder/");
   }
-  require_writable(path);
+  end == ".glb" || end == ".pvd" ? require_writable_file(path, inputs) : require_writable(path, inputs);
 }
 
 void write_animation(const std::string& output, const Animation& animation) {

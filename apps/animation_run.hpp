@@ -32,7 +32,8 @@ Animation animate(const ResponseRun& run, const AnimationOptions& options);
 
 /// Writes .glb, .pvd, or an OBJ sequence into a folder (a name without extension, or that ends with a slash).
 void write_animation(const std::string& output, const Animation& animation);
-/// Throws Error(usage) for an output that write_animation does not know, Error(io) for one that cannot be written.
-void require_output(const std::string& output);
+/// Throws Error(usage) for an output that write_animation does not know, Error(io) for one that cannot be written;
+/// Error(usage) too for one that is an input.
+void require_output(const std::string& output, const std::vector<std::string>& inputs);
 
 std::string quality_text(const skinbem::FrameQuality& worst);

@@ -26,7 +26,7 @@ void check(const CheckOptions& options) {
     std::fflush(stdout);
     skinbem::require_body(mesh, options.mesh);
   }
-  fmt::print("{}: a body of {} vertices, {} triangles, volume {:.6g}, size {:.6g}, genus {}, {} cavities\n",
+  fmt::print("{}: a body of {} vertices, {} triangles, volume {:.6g}, size {:.6g}, genus {}, cavities {}\n",
              options.mesh, mesh.vertex_count(), mesh.triangle_count(), skinbem::volume(mesh), skinbem::diagonal(mesh),
              found.topology.genus, found.topology.cavities);
 }

@@ -34,16 +34,33 @@ void end_progress() {
   progress_shown = false;
 }
 
-void require_writable(const std::filesystem::path& output) {
+void require_writable(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
   namespace fs = std::filesystem;
+  using skinbem::Error, skinbem::ErrorCode;
+  if (output.empty()) throw Error(ErrorCode::usage, "the output has no name, give one after -o");
   const fs::path place = output.has_filename() ? output : output.parent_path();
   const fs::path parent = place.has_parent_path() ? place.parent_path() : fs::path(".");
   if (!fs::is_directory(parent)) {
-    throw skinbem::Error(skinbem::ErrorCode::io, output.string() + ": cannot write: there is no folder " +
-                                                     parent.string() + ", create it first");
+    throw Error(ErrorCode::io,
+                output.string() + ": cannot write: there is no folder " + parent.string() + ", create it first");
   }
   if (access(parent.c_str(), W_OK | X_OK) != 0) {
-    throw skinbem::Error(skinbem::ErrorCode::io,
-                         output.string() + ": cannot write: no permission to write in " + parent.string());
+    throw Error(ErrorCode::io, output.string() + ": cannot write: no permission to write in " + parent.string());
   }
+  if (!fs::exists(place)) return;
+  if (!fs::is_regular_file(place) && !fs::is_directory(place)) {
+    throw Error(ErrorCode::io, output.string() + ": is no ordinary file, it would be replaced by one: name another");
+  }
+  for (const std::string& input : inputs) {
+    if (fs::exists(input) && fs::equivalent(place, input)) {
+      throw Error(ErrorCode::usage, output.string() + ": is the input " + input + ", name another output");
+    }
+  }
+}
+
+void require_writable_file(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
+  if (!output.empty() && std::filesystem::is_directory(output)) {
+    throw skinbem::Error(skinbem::ErrorCode::io, output.string() + ": is a directory, name a file");
+  }
+  require_writable(output, inputs);
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <skinbem/base/progress.hpp>
 
@@ -17,8 +18,11 @@ skinbem::Progress terminal_progress();
 /// Wipes that line.
 void end_progress();
 
-/// Throws Error(io) when `output` cannot be created, before hours are spent on what it should hold.
-void require_writable(const std::filesystem::path& output);
+/// What a run writes is checked before hours are spent on what it should hold. Throws Error(io) when `output` cannot be
+/// created, Error(usage) when it has no name or is one of the `inputs`, which it would replace.
+void require_writable(const std::filesystem::path& output, const std::vector<std::string>& inputs);
+/// The same for an output that is no folder.
+void require_writable_file(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 class Stopwatch {
  public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 
 #include <skinbem/base/error.hpp>
@@ -10,12 +11,27 @@
 
 namespace {
 
+std::string usage_message(const CLI::App* program, const CLI::Error& error) {
+  const std::vector<std::string> rest = program->remaining();
+  const std::vector<CLI::App*> commands = program->get_subcommands();
+  std::string what = error.what(), command;
+  if (!commands.empty()) {
+    command = commands.front()->get_name() + " ";
+  } else if (!rest.empty()) {
+    what =
+        "'" + rest.front() + "' is no command or option here, the commands are demo, check, response, animate and info";
+  }
+  std::replace(what.begin(), what.end(), '\n', ' ');
+  return "skinbem: " + what + " (`skinbem " + command + "--help` tells more)\n";
+}
+
 /// Exit codes are those of skinbem::ErrorCode: 2 usage, 3 bad input, 4 numerical failure, 5 files.
 int run(int argc, char** argv) {
   CLI::App program("Skin deformation from a few landmarks, with the boundary element method", "skinbem");
   program.set_version_flag("--version", "skinbem " SKINBEM_VERSION);
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
+  program.failure_message(usage_message);
   program.footer(
       "Exit codes: 0 ok, 2 usage, 3 bad input, 4 numerical failure, 5 a file cannot be read or written.\n"
       "Results go to stdout, messages and progress to stderr. `skinbem COMMAND --help` tells more.");

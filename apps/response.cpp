@@ -18,7 +18,7 @@ struct Options {
 };
 
 void response(const Options& options) {
-  require_writable(options.output);
+  require_writable_file(options.output, {options.run.mesh, options.run.landmarks});
   const ResponseRun run = run_response(options.run);
   skinbem::write_npy(options.output, run.response,
                      options.float32 ? skinbem::NpyType::float32 : skinbem::NpyType::float64);

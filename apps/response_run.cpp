@@ -14,8 +14,11 @@
 #include <skinbem/response/response_model.hpp>
 
 #include "console.hpp"
+#include "option_values.hpp"
 
 namespace {
+
+constexpr int most_threads = 1024;  // many more and the OpenMP run time crashes
 
 using skinbem::Error;
 using skinbem::ErrorCode;
@@ -36,6 +39,7 @@ void read_inputs(const ResponseRunOptions& options, ResponseRun& run) {
 
 /// R from a file of an earlier run, for the same mesh and landmarks.
 void read_response(const ResponseRunOptions& options, const std::string& file, ResponseRun& run) {
+  run.report.solver = "file";
   run.response = skinbem::read_npy(file);
   const Index rows = run.mesh.vertices.size(), columns = 3 * static_cast<Index>(run.landmarks.size());
   if (run.response.rows() != rows || run.response.cols() != columns) {
@@ -59,10 +63,18 @@ void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
   solve.progress = terminal_progress();
   solve.validate();
   skinbem::ResponseModel model(run.mesh, solve);
-  model.add(run.landmarks);
-  run.response = model.response();
+  try {
+    model.add(run.landmarks);
+    run.response = model.response();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_input) throw;
+    throw Error(error.code(), options.landmarks + ": " + error.what());
+  }
   run.positions = model.landmark_positions();
   const skinbem::ResponseSummary& summary = model.summary();
+  run.report.solver = "dense";
+  run.report.poisson = options.poisson;
+  run.report.tolerance = options.tolerance;
   run.report.estimated_error = summary.estimated_error;
   run.report.residual = summary.residual;
   run.report.iterations = summary.iterations;
@@ -79,14 +91,16 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
   command.add_option("--landmarks", options.landmarks, "CSV with name and vertex and/or x,y,z")->required();
   command.add_option("--poisson", options.poisson, "Poisson's ratio in (-1, 0.5]")->capture_default_str();
   command.add_option("--radius", options.radius, "Of landmarks whose file gives none, unit of the mesh; 0: a point")
+      ->check(number([](double value) { return value >= 0; }, "a length, zero or more"))
       ->capture_default_str();
-  command.add_option("--solver", options.solver, "How the equations are solved")
-      ->check(CLI::IsMember({"auto", "dense"}))
+  command.add_option("--solver", options.solver, "How the equations are solved: auto or dense")
+      ->check(word<int>({{"auto", 0}, {"dense", 0}}))
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance, "Relative error of the response, 1e-12 to 1e-1")
       ->capture_default_str();
   command.add_option("--threads", options.threads, "0: as many as there are")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number([](double value) { return value >= 0 && value <= most_threads; },
+                     fmt::format("a number of threads, 0 to {}", most_threads)))
       ->capture_default_str();
   command.add_flag("--weld", options.weld, "Make vertices at equal positions one");
   command.add_flag("--force", options.force, "Go on where the mesh crosses itself");
@@ -110,9 +124,6 @@ ResponseRun run_response(const ResponseRunOptions& options, const std::string& r
   report.triangles = run.mesh.triangle_count();
   report.volume = skinbem::volume(run.mesh);
   report.landmarks = static_cast<int>(run.landmarks.size());
-  report.poisson = options.poisson;
-  report.solver = response_file.empty() ? "dense" : "file";
-  report.tolerance = options.tolerance;
   report.threads = omp_get_max_threads();
   report.seconds.total = total.seconds();
   report.peak_bytes = skinbem::peak_resident_bytes();

@@ -68,5 +68,9 @@ inline constexpr double reciprocity = 0.02;
 inline constexpr double known_error = 0.005;
 /// A field that the method represents exactly, solved for: rounding and quadrature (1e-11) times the condition.
 inline constexpr double neumann_solve = 1e-9;
+/// The finer skin at the coarse vertices, mm, where the skin moves by tens of millimetres: see interpolation_tie.
+inline constexpr double finer_skin = 0.05;
+/// R written by the program with --tolerance 1e-10, against the exactly integrated one: what the option promises.
+inline constexpr double program_response = 1e-10;
 
 }  // namespace skinbem::tolerance

@@ -44,6 +44,9 @@ void write_file_atomically(const std::filesystem::path& path, const std::functio
   if (std::filesystem::is_directory(path)) {
     throw Error(ErrorCode::io, path.string() + ": is a directory, name a file");
   }
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
+    throw Error(ErrorCode::io, path.string() + ": is no ordinary file, it would be replaced by one: name another");
+  }
   Temporary temporary(path.string() + ".tmp" + std::to_string(::getpid()));
   {
     errno = 0;

@@ -30,9 +30,9 @@ std::string to_json(const RunReport& r) {
   return json{{"version", r.version},
               {"mesh", {{"vertices", r.vertices}, {"triangles", r.triangles}, {"volume", finite("volume", r.volume)}}},
               {"landmarks", r.landmarks},
-              {"poisson", finite("poisson", r.poisson)},
+              {"poisson", finite_or_null("poisson", r.poisson)},
               {"solver", r.solver},
-              {"tolerance", finite("tolerance", r.tolerance)},
+              {"tolerance", finite_or_null("tolerance", r.tolerance)},
               {"estimated_error", finite_or_null("estimated_error", r.estimated_error)},
               {"residual", finite_or_null("residual", r.residual)},
               {"iterations", r.iterations ? json(*r.iterations) : json(nullptr)},
@@ -52,10 +52,11 @@ std::string to_text(const RunReport& r) {
   out.precision(4);
   const auto& s = r.seconds;
   out << "mesh       " << r.vertices << " vertices, " << r.triangles << " triangles, volume " << r.volume << '\n'
-      << "landmarks  " << r.landmarks << ", Poisson's ratio " << r.poisson << '\n'
-      << "solver     " << r.solver << ", " << r.threads << (r.threads == 1 ? " thread" : " threads") << ", tolerance "
-      << r.tolerance;
-  if (r.iterations) out << ", " << *r.iterations << " iterations";
+      << "landmarks  " << r.landmarks;
+  if (r.poisson) out << ", Poisson's ratio " << *r.poisson;
+  out << "\nsolver     " << r.solver << ", " << r.threads << (r.threads == 1 ? " thread" : " threads");
+  if (r.tolerance) out << ", tolerance " << *r.tolerance;
+  if (r.iterations) out << ", " << *r.iterations << (*r.iterations == 1 ? " iteration" : " iterations");
   out << '\n';
   if (r.estimated_error) out << "error      " << *r.estimated_error << " (estimated, of the response)\n";
   if (r.residual) out << "residual   " << *r.residual << '\n';

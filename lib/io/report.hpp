@@ -9,15 +9,16 @@
 
 namespace skinbem {
 
-/// From a mesh to its response matrix. What a solver does not have (iterations of a direct one) stays empty.
+/// From a mesh to its response matrix. What a run does not have stays empty (iterations of a direct solver, Poisson's
+/// ratio of a response that was read).
 struct RunReport {
   std::string version;
   std::int64_t vertices = 0, triangles = 0;
   double volume = 0;  ///< of the body, cube of the mesh's unit
   int landmarks = 0;
-  double poisson = 0;
-  std::string solver;  ///< `dense` or `hmatrix`
-  double tolerance = 0;
+  std::optional<double> poisson;
+  std::string solver;  ///< `dense`, `hmatrix`, or `file` for a response that was read
+  std::optional<double> tolerance;
   std::optional<double> estimated_error;  ///< of R, relative to its largest entry
   std::optional<double> residual;         ///< worst relative residual of a column
   std::optional<int> iterations;
