@@ -30,7 +30,7 @@ install(FILES "${PROJECT_BINARY_DIR}/skinbem-config.cmake" "${PROJECT_BINARY_DIR
 
 file(RELATIVE_PATH pc_prefix "${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 # A static library leaves its own libraries to those who link it; a shared one brings them.
-set(pc_needs "openblas libhwy libxxhash libpng")
+set(pc_needs "openblas libhwy libpng")
 set(pc_libs "${OpenMP_CXX_FLAGS}")
 if(SKINBEM_WITH_CHOLMOD)
   string(APPEND pc_libs " -lcholmod")

@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config git
   libeigen3-dev libsuitesparse-dev libopenblas-openmp-dev libhwy-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev libxxhash-dev libpng-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libpng-dev
   libbenchmark-dev libgtest-dev libgmock-dev
 )
 

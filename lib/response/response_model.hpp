@@ -31,10 +31,12 @@ struct ResponseSummary {
   double assemble_seconds = 0;
   double factor_seconds = 0;
   double solve_seconds = 0;
-  double near_share = 0;       ///< of vertex-triangle pairs, integrated in closed form
-  double estimated_error = 0;  ///< of R, relative; from how well H annihilates rotations and from the residual
-  double residual = 0;         ///< largest of the solves so far
-  int iterations = 0;          ///< most of the solves so far
+  double near_share = 0;  ///< of vertex-triangle pairs, integrated in closed form
+  /// Of R, relative to its largest entry: the smaller of the quadrature tolerance and what rotations show of its error,
+  /// plus the residual.
+  double estimated_error = 0;
+  double residual = 0;  ///< largest of the solves so far
+  int iterations = 0;   ///< most of the solves so far
 };
 
 /// A body whose boundary is deformed through landmarks, and everything computed about it so far: the factorised

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <skinbem/mesh/adjacency.hpp>
+#include <skinbem/mesh/closest_point.hpp>
 #include <skinbem/response/response_model.hpp>
 
+#include "files.hpp"
+#include "reference_data.hpp"
 #include "response/bodies.hpp"
 #include "tolerances.hpp"
 
@@ -61,6 +64,65 @@ TEST(LandmarkRadius, PatchDoesNotJumpToAnotherSideThatIsNear) {
   ResponseModel model(slab, {0.3, 1e-6, {}});
   model.add(landmarks);
   for (Index k = 0; k < 3; ++k) EXPECT_EQ(model.landmark_positions()(k, 2), 0) << "averages both sides";
+}
+
+/// |R_h - R_(h/2)| / |R_(h/2)| at the vertices that two spheres share, 162 and 642 vertices.
+double change_by_refinement(double radius) {
+  const std::vector<Landmark> landmarks = landmarks_on({0, 3, 5, 9}, radius);
+  const Eigen::MatrixXd coarse = response_of(icosphere(2), landmarks, 1e-4);
+  const Eigen::MatrixXd fine = response_of(icosphere(3), landmarks, 1e-4).topRows(coarse.rows());
+  return (fine - coarse).norm() / fine.norm();
+}
+
+TEST(LandmarkRadius, MakesTheResponseConvergeWherePointLandmarksDoNot) {
+  const double with_radius = change_by_refinement(0.8), points = change_by_refinement(0);
+  EXPECT_LE(with_radius, tolerance::refined_sphere);
+  EXPECT_LE(5 * with_radius, points);
+}
+
+/// Root mean square over skin and columns of the difference between the responses of the real leg with 606 and with
+/// 2,000 vertices (there taken at the place nearest to the coarse vertex), relative to the finer one.
+double difference_of_legs(double radius) {
+  const TriangleMesh coarse = read_reference_obj(shared_data("lower_limb/skin.obj"));
+  const TriangleMesh fine = read_reference_obj(shared_data("lower_limb/skin_2k.obj"));
+  std::vector<std::int32_t> on_coarse, on_fine;
+  for (const std::string& row : read_reference_column(shared_data("lower_limb/landmarks.csv"), "skin_vertex")) {
+    on_coarse.push_back(std::stoi(row));
+    on_fine.push_back(vertex_at(fine, coarse.vertices.row(on_coarse.back())));
+  }
+  const Eigen::MatrixXd a = response_of(coarse, landmarks_on(on_coarse, radius), 1e-3);
+  const Eigen::MatrixXd b = response_of(fine, landmarks_on(on_fine, radius), 1e-3);
+  const SurfaceQuery surface(fine);
+  Eigen::MatrixXd at_coarse = Eigen::MatrixXd::Zero(a.rows(), a.cols());
+  for (Index v = 0; v < coarse.vertex_count(); ++v) {
+    const SurfacePoint p = surface.closest(coarse.vertices.row(v));
+    for (int c = 0; c < 3; ++c) {
+      at_coarse.middleRows<3>(3 * v) += p.barycentric[c] * b.middleRows<3>(3 * fine.triangles(p.triangle, c));
+    }
+  }
+  return (a - at_coarse).norm() / at_coarse.norm();
+}
+
+TEST(LandmarkRadius, BringsTheRealLegOf606VerticesCloserToThatOf2000) {
+  SKINBEM_NEEDS_SHARED_DATA("lower_limb/skin_2k.obj");
+  // wider than the edges of the coarse shank, 26 mm: below them a landmark is a point there and a patch on the finer
+  // leg
+  const double with_radius = difference_of_legs(45), points = difference_of_legs(0);
+  EXPECT_LE(with_radius, tolerance::leg_of_2k);
+  EXPECT_LE(with_radius, 0.8 * points);
+}
+
+TEST(Cavity, IsRefusedCloseToIncompressible) {
+  const TriangleMesh body = hollow_sphere(1);
+  EXPECT_NO_THROW(ResponseModel(body, {0.49, 1e-3, {}}));
+  for (const double poisson : {0.495, 0.5}) {
+    try {
+      ResponseModel model(body, {poisson, 1e-3, {}});
+      ADD_FAILURE() << poisson;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    }
+  }
 }
 
 }  // namespace
