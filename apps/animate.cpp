@@ -39,9 +39,10 @@ void run_animate(const Options& options) {
   require_output(options.output,
                  {options.response.mesh, options.response.landmarks, options.response_file, options.animation.motion,
                   options.animation.rig, options.animation.fine_skin, options.animation.bones});
+  const RiggedMotion motion = read_motion(options.animation);  // its errors come before a long solve
   const ResponseRun run = run_response(options.response, options.response_file);
   warn_of_fine_points(run);
-  const Animation animation = animate(run, options.animation);
+  const Animation animation = animate(run, motion, options.animation);
   const std::vector<skinbem::FrameQuality> quality = skinbem::deformation_quality(animation.skin, animation.bones);
   write_animation(options.output, animation);
   if (options.response.json) {

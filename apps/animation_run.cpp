@@ -60,12 +60,17 @@ std::vector<std::string> target_names(const std::vector<skinbem::Landmark>& land
 
 }  // namespace
 
-Animation animate(const ResponseRun& run, const AnimationOptions& options) {
-  const skinbem::Rig rig = skinbem::read_rig(options.rig);
-  skinbem::SkeletonMotion skeleton = skinbem::read_skeleton_motion(rig, options.motion);
-  skeleton = skinbem::resampled(skeleton, options.fps, options.from, options.to);
+RiggedMotion read_motion(const AnimationOptions& options) {
+  RiggedMotion motion{skinbem::read_rig(options.rig), {}};
+  motion.skeleton = skinbem::resampled(skinbem::read_skeleton_motion(motion.rig, options.motion), options.fps,
+                                       options.from, options.to);
+  return motion;
+}
+
+Animation animate(const ResponseRun& run, const RiggedMotion& rigged, const AnimationOptions& options) {
+  const skinbem::Rig& rig = rigged.rig;
   const skinbem::LandmarkMotion motion =
-      skinbem::landmark_motion(rig, std::move(skeleton), run.landmarks, run.positions, options.mode, options.artefact);
+      skinbem::landmark_motion(rig, rigged.skeleton, run.landmarks, run.positions, options.mode, options.artefact);
   for (const std::string& name : motion.unmarked) warn("landmark " + name + " has no marker, it follows its bone");
 
   Animation animation;

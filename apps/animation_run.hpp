@@ -28,7 +28,15 @@ struct Animation {
   std::vector<skinbem::MovingBone> bones;
 };
 
-Animation animate(const ResponseRun& run, const AnimationOptions& options);
+/// A rig and how its segments move in the asked frames.
+struct RiggedMotion {
+  skinbem::Rig rig;
+  skinbem::SkeletonMotion skeleton;
+};
+
+RiggedMotion read_motion(const AnimationOptions& options);
+
+Animation animate(const ResponseRun& run, const RiggedMotion& rigged, const AnimationOptions& options);
 
 /// Writes .glb, .pvd, or an OBJ sequence into a folder (a name without extension, or that ends with a slash).
 void write_animation(const std::string& output, const Animation& animation);

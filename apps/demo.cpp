@@ -98,7 +98,7 @@ void demo(const fs::path& folder) {
     options.rig = (limb / "rig.toml").string();
     options.bones = (limb / "bones").string();
     options.artefact.kind = skinbem::ArtefactKind::trial;
-    const Animation animation = animate(run, options);
+    const Animation animation = animate(run, read_motion(options), options);
     write_animation((folder / (name + ".glb")).string(), animation);
     draw_strip(folder / (name + ".png"), animation, motion);
     fmt::print(

@@ -170,6 +170,15 @@ TEST_F(Animate, OutputsThatCannotBeAreNamed) {
   EXPECT_THAT(written(), ElementsAre("R.npy", "folder.glb", "walk.bvh"));
 }
 
+TEST_F(Animate, MistakesInTheMotionComeBeforeTheSolveAndItsWarnings) {
+  const Arguments of_box = Arguments{"animate"} + box() + Arguments{"-o", path("a.glb")};
+  const std::string motion = shipped("data/lower_limb/walk.bvh"), rig = shipped("data/lower_limb/rig.toml");
+  expect_failure(run(of_box + Arguments{"--motion", path("none.bvh"), "--rig", rig}), 5, "none.bvh");
+  expect_failure(run(of_box + Arguments{"--motion", motion, "--rig", path("none.toml")}), 5, "none.toml");
+  expect_failure(run(of_box + Arguments{"--motion", motion, "--rig", rig, "--from", "100"}), 2,
+                 "no frame lies between");
+}
+
 TEST_F(Animate, InputsThatCannotBeAreNamed) {
   const std::string response = path("R.npy");
   ASSERT_NE(glb(), "");
