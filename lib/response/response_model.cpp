@@ -88,7 +88,7 @@ struct ResponseModel::State {
   /// The part of the error of R that quadrature makes: the tolerance that every element integral keeps (a priori), or
   /// what a rotation shows of it (a posteriori): measured over spheres, legs, boxes and slabs, R errs by 100 to 12,000
   /// times |H (w x X)| / |w x X|.
-  static constexpr double rotation_residual_to_error = 20000;
+  static constexpr double rotation_residual_to_error = 50000;
   static QuadratureOptions quadrature_for(double tolerance) { return {tolerance}; }
 
   void check(const Landmark& landmark, Index replaced) const {
