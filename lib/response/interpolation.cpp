@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <skinbem/response/nearest_point.hpp>
+#include <skinbem/mesh/closest_point.hpp>
 
 namespace skinbem {
 namespace {
@@ -157,10 +157,11 @@ SkinInterpolation::SkinInterpolation(const Points& coarse, const TriangleMesh& f
   }
   factor_->fine_count = fine.vertex_count();
   const double length = mean_edge(fine);
+  const SurfaceQuery surface(fine);
   for (Index c = 0; c < coarse.rows(); ++c) {
     const Vec3 point = coarse.row(c);
-    const SurfacePoint nearest = nearest_point(fine, point);
-    const double distance = (nearest.position - point).norm();
+    const SurfacePoint nearest = surface.closest(point);
+    const double distance = nearest.distance;
     if (!(distance <= kSameBody * diagonal(fine))) {
       throw Error(ErrorCode::bad_input, "interpolation: vertex " + std::to_string(c) + " of the coarse skin is " +
                                             std::to_string(distance) +
