@@ -50,19 +50,20 @@ void count(benchmark::State& state, double operations_per_pair) {
   state.counters["flop/s"] = benchmark::Counter(pairs * operations_per_pair, benchmark::Counter::kIsRate);
 }
 
-template <class Kernel>
+template <class Kernel, Precision precision = Precision::float64>
 void double_layer(benchmark::State& state) {
   const Kernel kernel{};
   const Scene scene(static_cast<std::size_t>(state.range(0)));
   Entries out[3];
   double* const pointers[3] = {out[0].values.data(), out[1].values.data(), out[2].values.data()};
   for (auto _ : state) {
-    add_double_layer(kernel, scene.panel, 0xffffu, scene.source(), Eigen::Vector3d::UnitZ(), pointers);
+    add_double_layer(kernel, scene.panel, 0xffffu, scene.source(), Eigen::Vector3d::UnitZ(), pointers, precision);
     benchmark::ClobberMemory();
   }
   count(state, 3 + 5 + 15 + 2 + 3 + 2 + 1 + 6 + 54);
 }
 BENCHMARK(double_layer<Kelvin<double>>)->Arg(3)->Arg(7)->Arg(16)->Arg(42);
+BENCHMARK((double_layer<Kelvin<double>, Precision::float32>))->Arg(3)->Arg(7)->Arg(16)->Arg(42);
 BENCHMARK(double_layer<ScalarKelvin>)->Arg(7);
 
 template <class Kernel>

@@ -47,6 +47,8 @@ inline constexpr double finite_difference = 1e-10;
 /// A batch against the scalar kernel, relative to the largest entry of the block: an inverse root by Newton's steps (a
 /// few units of the last place, cubed) and seven Gauss points.
 inline constexpr double batch = 1e-14;
+/// The same with far points in single precision: some roundings of 6e-8 where the nine entries do not cancel.
+inline constexpr double single_precision_batch = 3e-6;
 
 /// H and G of 42 nodes against long double, absolute: entries up to 0.5, from about six element integrals each.
 inline constexpr double reference_matrix = 1e-13;
