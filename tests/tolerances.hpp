@@ -34,7 +34,8 @@ inline constexpr double sampling = 0.043;
 /// A motion by rig and file: rotations from angles and cross products, then points a few units away, in units of their
 /// size.
 inline constexpr double motion = 1e-12;
-/// Winding numbers with far triangles as dipoles at three radii: measured 4e-3 at worst; a decision needs 0.5.
+/// Winding numbers of the tests' small meshes with far triangles as dipoles (scanned meshes: 0.023 at worst); a
+/// decision needs 0.5.
 inline constexpr double winding_number = 2e-2;
 
 /// Numbers stored as float in a file, a dozen of them combined: some roundings of single precision.

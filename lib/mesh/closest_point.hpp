@@ -32,9 +32,9 @@ class SurfaceQuery {
   /// Of several equally close triangles, the one of lowest index met first in the tree's fixed order.
   SurfacePoint closest(const Vec3& p) const;
   /// How often the surface winds around `p`: 1 inside a body, 0 outside and in its cavities, fractions where it is
-  /// open. Far parts of the surface count as dipoles, with an error of about 1e-3 (G. Barill et al., Fast Winding
-  /// Numbers for Soups and Clouds, ACM TOG 37(4), 2018); near ones are exact (A. van Oosterom and J. Strackee, The
-  /// Solid Angle of a Plane Triangle, IEEE TBME 30, 1983).
+  /// open. Far parts of the surface count as dipoles, with an error of up to 0.03, measured on scanned meshes of 606 to
+  /// 5,272 vertices (G. Barill et al., Fast Winding Numbers for Soups and Clouds, ACM TOG 37(4), 2018); near ones are
+  /// exact (A. van Oosterom and J. Strackee, The Solid Angle of a Plane Triangle, IEEE TBME 30, 1983).
   double winding_number(const Vec3& p) const;
   /// Whether the winding number is closer to 1 (or more) than to 0.
   bool inside(const Vec3& p) const { return winding_number(p) > 0.5; }

