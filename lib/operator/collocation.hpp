@@ -11,6 +11,7 @@
 #include <skinbem/kernels/kelvin.hpp>
 #include <skinbem/kernels/laplace.hpp>
 #include <skinbem/kernels/panel.hpp>
+#include <skinbem/mesh/adjacency.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
 #include <skinbem/operator/element_integral.hpp>
 
@@ -72,8 +73,7 @@ class Collocation {
   std::vector<Eigen::Vector3d> vertices_;  ///< times scale_
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<SourceTriangle> sources_;
-  std::vector<std::int32_t> first_triangle_of_;  ///< CSR: triangles around vertex v
-  std::vector<std::int32_t> triangle_of_;
+  IndexLists triangles_of_vertex_;
   std::vector<std::int32_t> order_;  ///< vertices along a space-filling curve
   double scale_;  ///< a power of two, so that scaling is exact: the kernels' batches work near unit length
   ElementIntegral<Kernel> integral_;

@@ -200,31 +200,22 @@ void Collocation<Kernel>::for_each_panel(const Progress& progress, std::string_v
 
 template <class Kernel>
 Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options)
-    : scale_(detail::power_of_two_scale(mesh)),
+    : triangles_of_vertex_(triangles_around_vertices(mesh)),
+      scale_(detail::power_of_two_scale(mesh)),
       integral_(kernel, options.tolerance),
       precision_(options.tolerance >= 1e-5 ? Precision::float32 : Precision::float64) {
   vertices_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;
   triangles_.resize(mesh.triangle_count());
   sources_.reserve(mesh.triangle_count());
-  first_triangle_of_.assign(vertices_.size() + 1, 0);
   for (Index t = 0; t < mesh.triangle_count(); ++t) {
     if (!(area_vector(mesh, t).norm() > 0)) {
       throw Error(ErrorCode::bad_input,
                   "triangle " + std::to_string(t) + " has no area; remove it and its vertices' duplicates");
     }
-    for (int c = 0; c < 3; ++c) {
-      triangles_[t][c] = mesh.triangles(t, c);
-      ++first_triangle_of_[mesh.triangles(t, c) + 1];
-    }
+    for (int c = 0; c < 3; ++c) triangles_[t][c] = mesh.triangles(t, c);
     const auto& v = triangles_[t];
     sources_.emplace_back(vertices_[v[0]], vertices_[v[1]], vertices_[v[2]]);
-  }
-  std::partial_sum(first_triangle_of_.begin(), first_triangle_of_.end(), first_triangle_of_.begin());
-  triangle_of_.resize(3 * triangles_.size());
-  std::vector<std::int32_t> next(first_triangle_of_.begin(), first_triangle_of_.end() - 1);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (const std::int32_t v : triangles_[t]) triangle_of_[next[v]++] = static_cast<std::int32_t>(t);
   }
   order_ = detail::morton_order(vertices_);
 }
@@ -233,8 +224,8 @@ template <class Kernel>
 std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const std::int32_t> columns) const {
   std::vector<std::int32_t> found;
   for (const std::int32_t v : columns) {
-    found.insert(found.end(), triangle_of_.begin() + first_triangle_of_[v],
-                 triangle_of_.begin() + first_triangle_of_[v + 1]);
+    const auto around = triangles_of_vertex_[v];
+    found.insert(found.end(), around.begin(), around.end());
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
