@@ -80,6 +80,10 @@ struct DoubleLayerMoments {
 
 namespace closed_form_detail {
 
+/// Nearer to a vertex or an edge than this, in lengths of the triangle, x counts as on it: squares of smaller numbers
+/// underflow.
+inline constexpr double touching = 1e-60;
+
 /// The line integrals along one edge, from vertex 1 at s1 to vertex 2 at s2.
 template <class T>
 struct EdgeIntegrals {
@@ -119,7 +123,7 @@ EdgeIntegrals<T> integrate_edge(T q, T d, T s1, T s2, T R1, T R2, T length) {
   e.w2 = q * q + d * d;
   const T sum = R1 + R2;
   e.dR = length * (s1 + s2) / sum;
-  const bool on_line = !(e.w2 > T(0));
+  const bool on_line = !(e.w2 > T(touching * touching) * length * length);
   if (s1 < T(0) && s2 > T(0)) {
     if (!on_line) {
       const T gap = e.w2 / (R2 + s2) + e.w2 / (R1 - s1);  // R1 + R2 - length
@@ -166,8 +170,10 @@ View<T> look_from(const TriangleGeometry<T>& g, const Eigen::Matrix<T, 3, 1>& x)
   View<T> view{};
   std::array<Eigen::Matrix<T, 3, 1>, 3> a;
   std::array<T, 3> R;
+  const T reach = T(touching) * g.edge_lengths[0];
   for (int i = 0; i < 3; ++i) {
     a[i] = g.vertices[i] - x;
+    if (!(a[i].cwiseAbs().maxCoeff() > reach)) a[i].setZero();
     R[i] = sqrt(a[i].squaredNorm());
   }
   // heights and hats are measured from the nearest vertex, where they lose least
@@ -178,8 +184,8 @@ View<T> look_from(const TriangleGeometry<T>& g, const Eigen::Matrix<T, 3, 1>& x)
     const int i = (e + 1) % 3;
     const int j = (e + 2) % 3;
     const T q = g.edge_normals[e].dot(R[i] < R[j] ? a[i] : a[j]);
-    const bool touching = !(R[i] > T(0)) || !(R[j] > T(0));
-    view.edges[e] = integrate_edge(touching ? T(0) : q, view.d, g.tangents[e].dot(a[i]), g.tangents[e].dot(a[j]), R[i],
+    const bool at_end = !(R[i] > T(0)) || !(R[j] > T(0));
+    view.edges[e] = integrate_edge(at_end ? T(0) : q, view.d, g.tangents[e].dot(a[i]), g.tangents[e].dot(a[j]), R[i],
                                    R[j], g.edge_lengths[e]);
     view.inverse_distance += view.edges[e].q * view.edges[e].L;
   }
