@@ -63,7 +63,8 @@ TriangleMesh parse_obj(std::string_view text, const std::string& name) {
         soup.corners.push_back(vertex_of_corner(scanner.word("a corner"), scanner, soup.vertex_count()));
       soup.end_face(scanner.line());
     } else if (std::find(skipped.begin(), skipped.end(), keyword) == skipped.end()) {
-      scanner.fail("unknown keyword " + in_quotes(keyword) + ", an OBJ file of vertices (v) and faces (f) was expected");
+      scanner.fail("unknown keyword " + in_quotes(keyword) +
+                   ", an OBJ file of vertices (v) and faces (f) was expected");
     }
   }
   return triangulated(soup);

@@ -27,7 +27,8 @@ Counts read_header(TextScanner& scanner) {
     scanner.fail("ends before the counts, number of vertices and faces expected");
   Counts counts;
   const std::string_view first = scanner.word("the number of vertices");
-  if (!parse_integer(first, counts.vertices)) scanner.fail(in_quotes(first) + " is not a number of vertices, correct it");
+  if (!parse_integer(first, counts.vertices))
+    scanner.fail(in_quotes(first) + " is not a number of vertices, correct it");
   counts.faces = scanner.integer("the number of faces");
   if (scanner.more()) scanner.integer("the number of edges");
   scanner.end_of_line();

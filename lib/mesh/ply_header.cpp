@@ -50,7 +50,8 @@ Encoding read_format(TextScanner& scanner) {
   if (format == "ascii") return Encoding::ascii;
   if (format == "binary_little_endian") return Encoding::little_endian;
   if (format == "binary_big_endian") return Encoding::big_endian;
-  scanner.fail("unknown format " + in_quotes(format) + ", ascii, binary_little_endian or binary_big_endian was expected");
+  scanner.fail("unknown format " + in_quotes(format) +
+               ", ascii, binary_little_endian or binary_big_endian was expected");
 }
 
 Element read_element(TextScanner& scanner, const std::vector<Element>& before) {
@@ -88,7 +89,8 @@ void require_mesh(const Header& header, const TextScanner& scanner) {
                         [&](const Element& e) { return e.name == name; });
   };
   for (const Element& element : header.elements) {  // one without bytes could be announced any number of times
-    if (element.properties.empty()) scanner.fail("element " + in_quotes(element.name) + " has no properties, remove it");
+    if (element.properties.empty())
+      scanner.fail("element " + in_quotes(element.name) + " has no properties, remove it");
   }
   const auto vertex = find("vertex"), face = find("face");
   if (vertex == header.elements.end()) scanner.fail("no element 'vertex' in the header, a mesh was expected");
