@@ -53,10 +53,13 @@ struct TriangleGeometry {
     const int longest = squares[0] > squares[1] ? (squares[0] > squares[2] ? 0 : 2) : (squares[1] > squares[2] ? 1 : 2);
     const Vector cross = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
     twice_area = sqrt(cross.squaredNorm());
-    normal = cross / twice_area;
     for (int e = 0; e < 3; ++e) {
       edge_lengths[e] = sqrt(squares[e]);
       tangents[e] = edges[e] / edge_lengths[e];
+    }
+    normal = cross / twice_area;
+    normal -= normal.dot(tangents[longest]) * tangents[longest];  // a needle's cross product leans along it
+    for (int e = 0; e < 3; ++e) {
       edge_normals[e] = tangents[e].cross(normal);
       hat_gradients[e] = edge_normals[e] * (-edge_lengths[e] / twice_area);
     }
@@ -68,6 +71,11 @@ template <class T>
 struct SingleLayerMoments {
   T inverse_distance;           ///< int N / r dS
   Eigen::Matrix<T, 3, 3> dyad;  ///< int N r r^T / r^3 dS
+
+  template <class U>
+  SingleLayerMoments<U> cast() const {
+    return {U(inverse_distance), dyad.template cast<U>()};
+  }
 };
 
 /// Moments for a kernel like 1/r^2 (double layer), against the hat function of one vertex.
@@ -76,6 +84,11 @@ struct DoubleLayerMoments {
   T solid_angle;                      ///< int N (r.n) / r^3 dS
   Eigen::Matrix<T, 3, 1> attraction;  ///< int N r / r^3 dS
   Eigen::Matrix<T, 3, 3> dyad;        ///< int N 3 (r.n) r r^T / r^5 dS
+
+  template <class U>
+  DoubleLayerMoments<U> cast() const {
+    return {U(solid_angle), attraction.template cast<U>(), dyad.template cast<U>()};
+  }
 };
 
 namespace closed_form_detail {
@@ -145,9 +158,9 @@ EdgeIntegrals<T> integrate_edge(T q, T d, T s1, T s2, T R1, T R2, T length) {
   return e;
 }
 
-/// int (r.n)/r^3, the signed solid angle: from the three directions at once (van Oosterom and Strackee) where that does
-/// not cancel, else (x close to the triangle) edge by edge: the angle of (q s, w^2 + |d| R) between the ends of each
-/// edge.
+/// int (r.n)/r^3, the signed solid angle: from the three directions at once (van Oosterom and Strackee) where the
+/// denominator's cancellation costs less than the rounding of an angle of size 1, always so for x almost in the plane
+/// outside; else (x close to the triangle) edge by edge: the angle of (q s, w^2 + |d| R) between the ends of each edge.
 template <class T>
 T solid_angle(const TriangleGeometry<T>& g, const std::array<Eigen::Matrix<T, 3, 1>, 3>& a, const std::array<T, 3>& R,
               T d, const std::array<EdgeIntegrals<T>, 3>& edges) {
@@ -156,7 +169,9 @@ T solid_angle(const TriangleGeometry<T>& g, const std::array<Eigen::Matrix<T, 3,
   if (d == T(0)) return T(0);
   const T product = R[0] * R[1] * R[2];
   const T denominator = product + a[0].dot(a[1]) * R[2] + a[1].dot(a[2]) * R[0] + a[2].dot(a[0]) * R[1];
-  if (denominator > product) return T(2) * atan2(d * g.twice_area, denominator);
+  const T numerator = d * g.twice_area;
+  if (denominator > product || (denominator > T(0) && abs(numerator) * product < denominator * denominator))
+    return T(2) * atan2(numerator, denominator);
   T sum = T(0);
   for (const auto& e : edges) {
     sum += atan2(e.q * e.s2, e.w2 + abs(d) * e.R2) - atan2(e.q * e.s1, e.w2 + abs(d) * e.R1);

@@ -58,6 +58,8 @@ NearSingularRule::NearSingularRule(const TriangleGeometry<double>& triangle, con
     gradients_.col(e) = (frame_ * triangle.hat_gradients[e]).head<2>();
   }
   find_closest_point(x);
+  for (double& hat : hats_c_)
+    if (hat < closed_form_detail::touching) hat = 0;  // c on the edge: the rays to it would underflow
   const double longest = *std::max_element(triangle.edge_lengths.begin(), triangle.edge_lengths.end());
   if (delta_ > 0 && delta_ < smallest_distance * longest) {
     to_c_ *= smallest_distance * longest / delta_;
