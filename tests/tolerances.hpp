@@ -19,6 +19,10 @@ inline constexpr double frame_rigid = 1e-6;
 /// The same in double, of landmark positions that were themselves rounded.
 inline constexpr double frame_reference = 1e-12;
 
+/// Handles against R of the same landmarks, relative to the body's size for pulls of a tenth of it: Green's functions
+/// and their weights in single precision, which cancel where handles are neighbours.
+inline constexpr double handles = 2e-5;
+
 /// What the interpolation to a finer skin promises of fields u = a + F x.
 inline constexpr double affine = 1e-10;
 /// The finer skin at a coarse vertex: ties are springs 1e4 times as stiff as the field; random values, the worst case.

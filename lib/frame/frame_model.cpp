@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <skinbem/base/error.hpp>
 #include <skinbem/base/rigid_fit.hpp>
+#include <skinbem/frame/frame_factors.hpp>
 
 namespace skinbem {
 namespace {
 
-/// Numbers beyond this never enter a frame; the margin to the largest float holds the rotation and translation.
-constexpr double kLargest = 1e-2 * std::numeric_limits<float>::max();
 /// Landmarks whose second extent is below this share of the first leave the rotation about their line to noise.
 constexpr double kNearlyCollinear = 0.02;
 
@@ -34,7 +32,7 @@ void check_shapes(const Points& rest, const Eigen::MatrixXd& response, const Poi
 void check_numbers(const char* name, const auto& matrix) {
   for (Index j = 0; j < matrix.cols(); ++j) {
     for (Index i = 0; i < matrix.rows(); ++i) {
-      if (!(std::abs(matrix(i, j)) <= kLargest)) {
+      if (!(std::abs(matrix(i, j)) <= detail::kLargestNumber)) {
         throw Error(ErrorCode::bad_input, std::string("frame: ") + name + " has " + std::to_string(matrix(i, j)) +
                                               " at row " + std::to_string(i) + ", column " + std::to_string(j) +
                                               "; it must be finite and within the range of float");
@@ -60,7 +58,7 @@ FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, cons
   check_numbers("the response matrix", response);
   check_numbers("the landmark position", landmark_rest);
   centre_ = options.directions ? Vec3(Vec3::Zero()) : Vec3(rest.colwise().mean());
-  largest_weight_ = kLargest / std::max(1.0, response.cwiseAbs().rowwise().sum().maxCoeff());
+  largest_weight_ = detail::kLargestNumber / std::max(1.0, response.cwiseAbs().rowwise().sum().maxCoeff());
   const Points centred = rest.rowwise() - centre_.transpose();
   packed_ = options.storage == FrameStorage::int16
                 ? detail::pack_int16(centred, response, options.error_bound / options.motion_range)
@@ -89,7 +87,8 @@ bool FrameState::set_landmarks(const Eigen::Ref<const Points>& displacements) no
 }
 
 bool FrameState::set_motion(const BodyMotion& motion) noexcept {
-  if (motion.weights.size() != candidate_.weights.size() || !(motion.rigid.rotation.array().abs() <= 1.001).all()) {
+  if (motion.weights.size() != candidate_.weights.size() ||
+      !(motion.rigid.rotation.array().abs() <= detail::kLargestOfRotation).all()) {
     return false;  // not the shape, or not a rotation
   }
   candidate_ = motion;
@@ -98,7 +97,7 @@ bool FrameState::set_motion(const BodyMotion& motion) noexcept {
 
 bool FrameState::accept_candidate() noexcept {
   if (!(candidate_.weights.array().abs() <= model_->largest_weight_).all() ||
-      !(candidate_.rigid.translation.array().abs() <= kLargest).all()) {
+      !(candidate_.rigid.translation.array().abs() <= detail::kLargestNumber).all()) {
     return false;
   }
   std::swap(motion_, candidate_);
@@ -108,13 +107,9 @@ bool FrameState::accept_candidate() noexcept {
 }
 
 void FrameState::repeat_rigid() noexcept {
-  const Eigen::Matrix3f rotation = motion_.rigid.rotation.cast<float>();
-  const Vec3 moved_centre = model_->options_.directions ? Vec3(Vec3::Zero()) : motion_.rigid(model_->centre_);
-  const Eigen::Vector3f translation = moved_centre.cast<float>();
-  for (Index i = 0; i < Index{detail::FrameFactors::kRepeated}; i += 3) {
-    for (Index j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3f>(factors_.rotation[j] + i) = rotation.col(j);
-    Eigen::Map<Eigen::Vector3f>(factors_.translation + i) = translation;
-  }
+  RigidMotion rigid = motion_.rigid;
+  if (model_->options_.directions) rigid.translation.setZero();
+  detail::repeat_rigid(rigid, model_->centre_, factors_);
 }
 
 detail::FrameFactors FrameState::factors() const noexcept {

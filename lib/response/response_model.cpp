@@ -42,15 +42,6 @@ void ResponseOptions::validate() const {
   }
 }
 
-/// A landmark and its Green's functions.
-struct GreensFunctions {
-  Landmark landmark;
-  LandmarkPatch patch;
-  double load;        ///< norm of G_k before scaling
-  Eigen::MatrixXd X;  ///< 3N by 3
-  Eigen::MatrixXd L;  ///< 6 by 3
-};
-
 struct ResponseModel::State {
   TriangleMesh mesh;
   ResponseOptions options;
@@ -233,6 +224,10 @@ void ResponseModel::remove(Index k) {
   if (k < 0 || k >= Index(state_->greens.size())) throw Error(ErrorCode::usage, "no landmark of that number to remove");
   state_->greens.erase(state_->greens.begin() + k);
   state_->keep_names();
+}
+
+std::vector<GreensFunctions> ResponseModel::greens_functions(std::span<const Landmark> landmarks) {
+  return state_->solve(landmarks);
 }
 
 const std::vector<Landmark>& ResponseModel::landmarks() const { return state_->landmarks; }

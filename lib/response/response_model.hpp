@@ -9,7 +9,7 @@
 
 #include <skinbem/base/progress.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
-#include <skinbem/response/landmark.hpp>
+#include <skinbem/response/landmark_patch.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 
 namespace skinbem {
@@ -39,6 +39,15 @@ struct ResponseSummary {
   int iterations = 0;   ///< most of the solves so far
 };
 
+/// A landmark and its Green's functions: displacements for unit tractions, each column of G_k scaled by 1 / load.
+struct GreensFunctions {
+  Landmark landmark;
+  LandmarkPatch patch;
+  double load = 0;    ///< Frobenius norm of G_k before scaling
+  Eigen::MatrixXd X;  ///< X_k, 3N by 3, rows node-major
+  Eigen::MatrixXd L;  ///< L_k, 6 by 3: what the loads lack to be in equilibrium
+};
+
 /// A body whose boundary is deformed through landmarks, and everything computed about it so far: the factorised
 /// operator and each landmark's Green's functions.
 ///
@@ -64,6 +73,10 @@ class ResponseModel {
   void move(Index k, const Landmark& landmark);
   /// Takes landmark k out; those behind it move up. No solve.
   void remove(Index k);
+
+  /// X_k and L_k of landmarks that need not be the model's own: three right-hand sides each, all solved together and
+  /// counted in the summary; the model's landmarks stay. Throws Error naming a landmark that is not on the mesh.
+  std::vector<GreensFunctions> greens_functions(std::span<const Landmark> landmarks);
 
   const std::vector<Landmark>& landmarks() const;
   /// Nk by 3: where the landmarks are at rest, p_k = m_k(X); a point landmark's vertex.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every allocation of this program is counted: malloc is replaced, and operator new and Eigen end there.
 #include <skinbem/frame/frame_model.hpp>
+#include <skinbem/frame/handles.hpp>
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 
 #include "frame/models.hpp"
+#include "meshes.hpp"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SKINBEM_COUNTS_ALLOCATIONS
@@ -61,12 +63,20 @@ TEST(Frame, AllocatesNothing) {
   const std::vector<float> counted(10);
   ASSERT_GT(allocations, before_vector) << "the counter does not count";
 
+  ResponseModel body(testing_support::slender_ellipsoid(2));
+  const HandleModel handle_model(body, 1);
+  Handles handles(handle_model, std::vector<std::int32_t>{0, 9, 30, 50}, 40);
+  std::vector<float> ellipsoid(3 * static_cast<std::size_t>(handle_model.vertex_count()));
+  const Points pulls = Points::Random(5, 3);
+
   const long before = allocations;
   bool good = true;
   for (int i = 0; i < 100; ++i) {
     good = good && states[0].set_landmarks(displacement) && states[0].evaluate(positions);
     good = good && evaluate_batch(states, batch);
     good = good && states[1].evaluate(VertexTarget{positions}, threads);
+    good = good && handles.grab(70 + i % 50) && handles.pull(pulls) && handles.move(4, 120 + i % 40);
+    good = good && handles.evaluate(VertexTarget{ellipsoid}) && handles.release(4) && handles.pull(0, Vec3(0, 0, 1));
   }
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(good);

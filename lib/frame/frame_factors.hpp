@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The rigid part of a frame as the kernel wants it. Internal to the floor.
+#pragma once
+
+#include <limits>
+
+#include <skinbem/base/types.hpp>
+#include <skinbem/frame/panel_product.hpp>
+
+namespace skinbem::detail {
+
+/// Numbers beyond this never enter a frame; the margin to the largest float holds the rotation and translation.
+inline constexpr double kLargestNumber = 1e-2 * std::numeric_limits<float>::max();
+
+/// Entries of a rotation, rounded.
+inline constexpr double kLargestOfRotation = 1.001;
+
+/// Q and t for every lane, of rest positions that were packed relative to `centre`. The weights stay as they are.
+inline void repeat_rigid(const RigidMotion& rigid, const Vec3& centre, FrameFactors& factors) noexcept {
+  const Eigen::Matrix3f rotation = rigid.rotation.cast<float>();
+  const Eigen::Vector3f translation = rigid(centre).cast<float>();
+  for (Index i = 0; i < Index{FrameFactors::kRepeated}; i += 3) {
+    for (Index j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3f>(factors.rotation[j] + i) = rotation.col(j);
+    Eigen::Map<Eigen::Vector3f>(factors.translation + i) = translation;
+  }
+}
+
+}  // namespace skinbem::detail
