@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 // Vectors of a length unknown at compile time cannot be array elements; such machines use their fixed-length set.
@@ -93,39 +94,64 @@ HWY_ALIGN constexpr auto kLaneVertices = [] {
   return vertices;
 }();
 
-/// Q (.) + t of the vertices from `vertex` on, and to memory with x, y, z adjacent. The interleaving is part of the
-/// rotation: each output vector takes the three coordinates of its lanes' vertices, times the lanes' rows of Q.
-HWY_INLINE void move_and_store(Vector x, Vector y, Vector z, const FrameFactors& frame, const FrameTarget& target,
-                               std::size_t vertex, std::size_t vertices) {
-  if (vertex >= vertices) return;
-  const Tag d;
-  Vector position[3];
-  for (std::size_t m = 0; m < 3; ++m) {
-    const auto lane_vertices = hn::SetTableIndices(d, kLaneVertices.data() + m * kLanes);
-    Vector sum = hn::Load(d, frame.translation + m * kLanes);
-    sum = hn::MulAdd(hn::Load(d, frame.rotation[0] + m * kLanes), hn::TableLookupLanes(x, lane_vertices), sum);
-    sum = hn::MulAdd(hn::Load(d, frame.rotation[1] + m * kLanes), hn::TableLookupLanes(y, lane_vertices), sum);
-    position[m] = hn::MulAdd(hn::Load(d, frame.rotation[2] + m * kLanes), hn::TableLookupLanes(z, lane_vertices), sum);
+/// Q and t of a frame in registers, where there are enough of them.
+struct Motion {
+  using Lanes = decltype(hn::SetTableIndices(Tag(), kLaneVertices.data()));
+
+  Vector rotation[3][3];
+  Vector translation[3];
+  Lanes lane_vertices[3];
+
+  explicit HWY_INLINE Motion(const FrameFactors& frame) {
+    for (std::size_t m = 0; m < 3; ++m) {
+      lane_vertices[m] = hn::SetTableIndices(Tag(), kLaneVertices.data() + m * kLanes);
+      translation[m] = hn::Load(Tag(), frame.translation + m * kLanes);
+      for (std::size_t j = 0; j < 3; ++j) rotation[j][m] = hn::Load(Tag(), frame.rotation[j] + m * kLanes);
+    }
   }
+
+  /// Q (x, y, z) + t as the m-th of the vectors x0 y0 z0 x1 ...: the interleaving is part of the rotation. Each lane
+  /// takes the three coordinates of its vertex, times its row of Q.
+  HWY_INLINE Vector moved(Vector x, Vector y, Vector z, std::size_t m) const {
+    Vector sum = hn::MulAdd(rotation[0][m], hn::TableLookupLanes(x, lane_vertices[m]), translation[m]);
+    sum = hn::MulAdd(rotation[1][m], hn::TableLookupLanes(y, lane_vertices[m]), sum);
+    return hn::MulAdd(rotation[2][m], hn::TableLookupLanes(z, lane_vertices[m]), sum);
+  }
+};
+
+/// The same to memory that is not one run of floats, or that ends within the vector.
+HWY_NOINLINE void store_apart(const float* packed, const FrameTarget& target, std::size_t vertex,
+                              std::size_t vertices) {
+  if (vertex >= vertices) return;
   const std::size_t count = std::min(kLanes, vertices - vertex);
   float* to = target.data + vertex * target.stride;
-  if (target.stride == 3 && count == kLanes) {
-    for (std::size_t m = 0; m < 3; ++m) hn::StoreU(position[m], d, to + m * kLanes);
+  if (target.stride == 3) {
+    std::memcpy(to, packed, count * 3 * sizeof(float));
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * target.stride, packed + 3 * i, 3 * sizeof(float));
+}
+
+/// The vertices from `vertex` on, to memory with x, y, z adjacent.
+HWY_INLINE void move_and_store(Vector x, Vector y, Vector z, const Motion& motion, const FrameTarget& target,
+                               std::size_t vertex, std::size_t vertices) {
+  const Vector position[] = {motion.moved(x, y, z, 0), motion.moved(x, y, z, 1), motion.moved(x, y, z, 2)};
+  if (HWY_LIKELY(target.stride == 3 && vertex + kLanes <= vertices)) {
+    float* to = target.data + 3 * vertex;
+    for (std::size_t m = 0; m < 3; ++m) hn::StoreU(position[m], Tag(), to + m * kLanes);
     return;
   }
   HWY_ALIGN float packed[3 * kLanes];
-  for (std::size_t m = 0; m < 3; ++m) hn::Store(position[m], d, packed + m * kLanes);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) to[i * target.stride + c] = packed[3 * i + c];
-  }
+  for (std::size_t m = 0; m < 3; ++m) hn::Store(position[m], Tag(), packed + m * kLanes);
+  store_apart(packed, target, vertex, vertices);
 }
 
 /// The part of a panel that begins `shift` vertices into it.
-template <class B, class Columns, std::size_t... kSum, std::size_t... kFrame, std::size_t... kPosition,
-          std::size_t... kLine>
+template <class B, class Columns, class MotionOf, std::size_t... kSum, std::size_t... kFrame, std::size_t... kPosition>
 HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std::size_t shift,
-                               const FrameFactors* frames, const FrameTarget* targets, std::index_sequence<kSum...>,
-                               std::index_sequence<kFrame...>, std::index_sequence<kPosition...>) {
+                               const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets,
+                               std::index_sequence<kSum...>, std::index_sequence<kFrame...>,
+                               std::index_sequence<kPosition...>) {
   const std::byte* data = matrix.data + matrix.places[panel].offset;
   const std::size_t entries = matrix.places[panel].entries;
   const Columns columns(data, entries);
@@ -138,16 +164,16 @@ HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std
   const std::size_t first = panel * kPanelWidth + shift;
   (move_and_store(sum[B::sum(kPosition / B::kVectors, 0, kPosition % B::kVectors)],
                   sum[B::sum(kPosition / B::kVectors, 1, kPosition % B::kVectors)],
-                  sum[B::sum(kPosition / B::kVectors, 2, kPosition % B::kVectors)], frames[kPosition / B::kVectors],
+                  sum[B::sum(kPosition / B::kVectors, 2, kPosition % B::kVectors)], motion_of(kPosition / B::kVectors),
                   targets[kPosition / B::kVectors], first + B::begin(kPosition % B::kVectors), matrix.vertices),
    ...);
 }
 
-template <class B, class Columns>
+template <class B, class Columns, class MotionOf>
 HWY_INLINE void evaluate_panel(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
-                               const FrameTarget* targets) {
+                               const MotionOf& motion_of, const FrameTarget* targets) {
   for (std::size_t shift = 0; shift < kHalfPanel; shift += B::kVertices) {
-    evaluate_block<B, Columns>(matrix, panel, shift, frames, targets, std::make_index_sequence<B::kSums>(),
+    evaluate_block<B, Columns>(matrix, panel, shift, frames, motion_of, targets, std::make_index_sequence<B::kSums>(),
                                std::make_index_sequence<B::kFrames>(),
                                std::make_index_sequence<B::kFrames * B::kVectors>());
   }
@@ -158,15 +184,32 @@ HWY_INLINE void evaluate_panel(const PanelMatrix& matrix, std::size_t panel, con
 using SingleBlock = Block<std::min<std::size_t>(4, kPanelWidth / kLanes), 1>;
 using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
 
+/// One frame: its motion stays in registers from panel to panel.
+template <class Columns>
+HWY_INLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, std::size_t last,
+                                const FrameFactors& frame, const FrameTarget& target) {
+  const Motion motion(frame);
+  const auto motion_of = [&](std::size_t) -> const Motion& { return motion; };
+  for (std::size_t panel = first; panel < last; ++panel) {
+    evaluate_panel<SingleBlock, Columns>(matrix, panel, &frame, motion_of, &target);
+  }
+}
+
 template <class Columns>
 HWY_INLINE void evaluate_panels(const PanelMatrix& matrix, std::size_t first, std::size_t last,
                                 const FrameFactors* frames, const FrameTarget* targets, std::size_t frame_count) {
+  if (frame_count == 1) {
+    evaluate_single<Columns>(matrix, first, last, *frames, *targets);
+    return;
+  }
   for (std::size_t panel = first; panel < last; ++panel) {
     std::size_t f = 0;
+    const auto motion_of = [&](std::size_t i) { return Motion(frames[f + i]); };
     for (; f + BatchBlock::kFrames <= frame_count; f += BatchBlock::kFrames) {
-      evaluate_panel<BatchBlock, Columns>(matrix, panel, frames + f, targets + f);
+      evaluate_panel<BatchBlock, Columns>(matrix, panel, frames + f, motion_of, targets + f);
     }
-    for (; f < frame_count; ++f) evaluate_panel<SingleBlock, Columns>(matrix, panel, frames + f, targets + f);
+    for (; f < frame_count; ++f)
+      evaluate_panel<SingleBlock, Columns>(matrix, panel, frames + f, motion_of, targets + f);
   }
 }
 
