@@ -5,11 +5,13 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <skinbem/base/error.hpp>
+#include <skinbem/frame/aligned_buffer.hpp>
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <immintrin.h>
@@ -25,6 +27,8 @@ constexpr std::size_t kPieceBytes = 64 * 1024;
 /// Share of the time that late helpers may cost, and the wait that counts as late.
 constexpr double kLateShare = 0.1;
 constexpr double kLateSeconds = 20e-6;
+/// No model is as large.
+constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
 void pause_briefly() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -124,17 +128,51 @@ struct FrameThreads::Crew {
   }
 };
 
-FrameThreads::FrameThreads(int threads, std::size_t least_bytes) : crew_(std::make_unique<Crew>()) {
+FrameThreads::FrameThreads(int threads, std::optional<std::size_t> least_bytes) : crew_(std::make_unique<Crew>()) {
   if (threads < 0) throw Error(ErrorCode::usage, "frame: " + std::to_string(threads) + " threads; 0 means all");
   if (threads == 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  crew_->least_bytes = least_bytes;
+  crew_->least_bytes = least_bytes.value_or(kNever);
   for (int i = 1; i < threads; ++i) crew_->helpers.emplace_back([crew = crew_.get()] { crew->help(); });
+  if (!least_bytes && threads > 1) measure_least_bytes();
+}
+
+/// Models of growing size, each evaluated alone and together in turns, the best time of either: what the machine can
+/// do, not what else it was doing just then. Zeros are as fast as any other numbers.
+void FrameThreads::measure_least_bytes() {
+  constexpr std::size_t kSmallest = 64 * 1024, kLargest = 4 * 1024 * 1024;
+  constexpr std::size_t kEntries = 20;
+  constexpr std::size_t kPanelBytes = detail::kRestBytes * (kEntries + 1);
+  constexpr int kTurns = 12;
+  constexpr double kPays = 0.9;
+  const detail::AlignedVector<std::byte> zeros(kLargest);
+  std::vector<detail::PanelPlace> places;
+  for (std::size_t at = 0; at + kPanelBytes <= kLargest; at += kPanelBytes) places.push_back({at, kEntries});
+  std::vector<float> positions(3 * detail::kPanelWidth * places.size());
+  const detail::AlignedVector<float> weights(kEntries, 0.0F);
+  detail::FrameFactors frame{};
+  frame.weights = weights.data();
+  for (std::size_t bytes = kSmallest; bytes <= kLargest; bytes *= 2) {
+    const detail::PanelMatrix matrix{zeros.data(), places.data(), bytes / kPanelBytes * detail::kPanelWidth, false};
+    double best[2] = {1, 1};  // alone, together; seconds
+    for (int turn = 0; turn < 2 * kTurns; ++turn) {
+      crew_->least_bytes = turn % 2 == 0 ? kNever : 0;
+      crew_->frames_alone = 0;
+      const auto begin = Clock::now();
+      run(matrix, bytes, frame, {positions.data(), 3});
+      best[turn % 2] = std::min(best[turn % 2], std::chrono::duration<double>(Clock::now() - begin).count());
+    }
+    crew_->least_bytes = bytes;
+    if (best[1] < kPays * best[0]) return;
+  }
+  crew_->least_bytes = kNever;
 }
 
 FrameThreads::~FrameThreads() {
   crew_->stop = true;
   for (std::thread& helper : crew_->helpers) helper.join();
 }
+
+std::size_t FrameThreads::least_bytes() const noexcept { return crew_->least_bytes; }
 
 int FrameThreads::count() const noexcept { return static_cast<int>(crew_->helpers.size()) + 1; }
 

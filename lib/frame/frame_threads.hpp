@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <skinbem/frame/panel_product.hpp>
 
@@ -19,24 +20,26 @@ namespace skinbem {
 /// same bits whoever helps.
 class FrameThreads {
  public:
-  /// Bytes of a model below which a frame is over before help pays.
-  static constexpr std::size_t kLeastBytes = 400 * 1024;
-
   /// `threads` in all, the caller among them; 0: as many as the machine has. `least_bytes`: models that take fewer are
-  /// evaluated by the caller alone. Throws Error(usage) for a negative number.
-  explicit FrameThreads(int threads = 0, std::size_t least_bytes = kLeastBytes);
+  /// evaluated by the caller alone; where it is not given, the size from which help pays is measured, in a few
+  /// milliseconds. Throws Error(usage) for a negative number.
+  explicit FrameThreads(int threads = 0, std::optional<std::size_t> least_bytes = {});
   /// Waits for the helpers to end, about a millisecond.
   ~FrameThreads();
   FrameThreads(const FrameThreads&) = delete;
   FrameThreads& operator=(const FrameThreads&) = delete;
 
   int count() const noexcept;
+  /// Bytes of a model from which on others help; the largest number where help never paid, as on a single core.
+  std::size_t least_bytes() const noexcept;
 
   /// All panels of one frame. What FrameState::evaluate calls.
   void run(const detail::PanelMatrix& matrix, std::size_t bytes, const detail::FrameFactors& frame,
            const detail::FrameTarget& target) noexcept;
 
  private:
+  void measure_least_bytes();
+
   struct Crew;
   std::unique_ptr<Crew> crew_;
 };

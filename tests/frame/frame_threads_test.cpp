@@ -75,5 +75,14 @@ TEST(FrameThreads, LeaveSmallModelsAndWrongBuffersAlone) {
   EXPECT_GE(FrameThreads().count(), 1);
 }
 
+TEST(FrameThreads, MeasureFromWhichSizeTheyHelpUnlessTold) {
+  EXPECT_EQ(FrameThreads(2, 12345).least_bytes(), 12345);
+  const std::size_t measured = FrameThreads(2).least_bytes();
+  EXPECT_GE(measured, 64 * 1024);
+  const std::size_t never = FrameThreads(1).least_bytes();
+  EXPECT_TRUE(measured <= 4 * 1024 * 1024 || measured == never);
+  EXPECT_GT(never, std::size_t{1} << 60);
+}
+
 }  // namespace
 }  // namespace skinbem

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every allocation of this program is counted: malloc is replaced, and operator new and Eigen end there.
-#include <skinbem/frame/frame_model.hpp>
-#include <skinbem/frame/handles.hpp>
-
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <vector>
 
-#include "frame/models.hpp"
-#include "meshes.hpp"
+#include "frame/every_frame.hpp"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SKINBEM_COUNTS_ALLOCATIONS
@@ -51,13 +48,7 @@ TEST(Frame, AllocatesNothing) {
 #ifndef SKINBEM_COUNTS_ALLOCATIONS
   GTEST_SKIP() << "allocations are counted with glibc and without sanitizers only";
 #else
-  const testing_support::SyntheticSkin skin = testing_support::synthetic_skin(1000, 6);
-  const FrameModel model(skin.rest, skin.response, skin.landmarks);
-  std::vector<FrameState> states(5, FrameState(model));
-  std::vector<float> positions(3000);
-  std::vector<float> batch(15000);
-  const Points displacement = Points::Random(6, 3);
-  FrameThreads threads(2, 0);
+  testing_support::EveryFrame frames;
 
   const long before_vector = allocations;
   const std::vector<float> counted(10);
@@ -71,13 +62,7 @@ TEST(Frame, AllocatesNothing) {
 
   const long before = allocations;
   bool good = true;
-  for (int i = 0; i < 100; ++i) {
-    good = good && states[0].set_landmarks(displacement) && states[0].evaluate(positions);
-    good = good && evaluate_batch(states, batch);
-    good = good && states[1].evaluate(VertexTarget{positions}, threads);
-    good = good && handles.grab(70 + i % 50) && handles.pull(pulls) && handles.move(4, 120 + i % 40);
-    good = good && handles.evaluate(VertexTarget{ellipsoid}) && handles.release(4) && handles.pull(0, Vec3(0, 0, 1));
-  }
+  for (int i = 0; i < 100; ++i) good = frames.run() && good;
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(good);
 #endif
