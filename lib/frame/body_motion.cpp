@@ -8,13 +8,8 @@ namespace skinbem {
 void split_motion(const Eigen::Ref<const Points>& landmark_rest, const Eigen::Ref<const Points>& displacements,
                   FrameMode mode, BodyMotion& motion) noexcept {
   motion.rigid = mode == FrameMode::corotated ? fit_rigid_displacement(landmark_rest, displacements) : RigidMotion{};
-  const Mat3 to_body = motion.rigid.rotation.transpose();
   for (Index k = 0; k < landmark_rest.rows(); ++k) {
-    const Vec3 p = landmark_rest.row(k);
-    const Vec3 u = displacements.row(k);
-    // In linear mode u itself: p + u - p would lose its last bits.
-    motion.weights.segment<3>(3 * k) =
-        mode == FrameMode::linear ? u : Vec3(to_body * (p + u - motion.rigid.translation) - p);
+    motion.weights.segment<3>(3 * k) = body_weight(landmark_rest.row(k), displacements.row(k), motion.rigid, mode);
   }
 }
 

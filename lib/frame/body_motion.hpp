@@ -23,6 +23,11 @@ struct BodyMotion {
   static BodyMotion at_rest(Index landmark_count) { return {{}, Eigen::VectorXd::Zero(3 * landmark_count)}; }
 };
 
+/// q_k = Q^T (p_k + u_k - t) - p_k of one landmark; u_k itself in `linear` mode, as p + u - p would lose its last bits.
+inline Vec3 body_weight(const Vec3& p, const Vec3& u, const RigidMotion& rigid, FrameMode mode) noexcept {
+  return mode == FrameMode::linear ? u : Vec3(rigid.rotation.transpose() * (p + u - rigid.translation) - p);
+}
+
 /// Splits `displacements` u (#K by 3, mesh frame) of landmarks at `landmark_rest` p (#K by 3): (Q, t) is the
 /// least-squares rigid motion p -> p + u (identity in `linear` mode), q_k = Q^T (p_k + u_k - t) - p_k. `motion.weights`
 /// holds 3 #K numbers already, so nothing is allocated.

@@ -70,6 +70,12 @@ FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, cons
   }
 }
 
+void FrameModel::product(const detail::FrameFactors* frames, const detail::FrameTarget* targets,
+                         std::size_t count) const noexcept {
+  const detail::PanelMatrix panels = matrix();
+  detail::panel_product(panels, 0, panels.panels(), frames, targets, count);
+}
+
 FrameState::FrameState(const FrameModel& model)
     : model_(&model),
       motion_(BodyMotion::at_rest(model.landmark_count())),
@@ -123,11 +129,10 @@ bool FrameState::evaluate(std::span<float> positions) const noexcept {
 }
 
 bool FrameState::evaluate(const VertexTarget& positions) const noexcept {
-  const detail::PanelMatrix matrix = model_->matrix();
-  if (!positions.holds(matrix.vertices)) return false;
+  if (!positions.holds(model_->packed_.vertices)) return false;
   const detail::FrameFactors frame = factors();
   const detail::FrameTarget target{positions.vertex(0), positions.stride};
-  detail::panel_product(matrix, 0, matrix.panels(), &frame, &target, 1);
+  model_->product(&frame, &target, 1);
   return true;
 }
 
@@ -141,8 +146,7 @@ bool FrameState::evaluate(const VertexTarget& positions, FrameThreads& threads) 
 bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept {
   if (frames.empty()) return positions.empty();
   const FrameModel& model = frames.front().model();
-  const detail::PanelMatrix matrix = model.matrix();
-  const std::size_t frame_floats = 3 * matrix.vertices;
+  const std::size_t frame_floats = 3 * model.packed_.vertices;
   if (positions.size() != frames.size() * frame_floats) return false;
   for (const FrameState& frame : frames) {
     if (&frame.model() != &model) return false;
@@ -157,7 +161,7 @@ bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positio
       factors[f] = frames[begin + f].factors();
       targets[f] = {positions.data() + (begin + f) * frame_floats, 3};
     }
-    detail::panel_product(matrix, 0, matrix.panels(), factors.data(), targets.data(), count);
+    model.product(factors.data(), targets.data(), count);
   }
   return true;
 }

@@ -76,9 +76,14 @@ class FrameModel {
 
  private:
   friend class FrameState;
+  friend class PartialFrame;
   friend bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positions) noexcept;
 
   detail::PanelMatrix matrix() const noexcept { return packed_.matrix(); }
+  const Vec3& packing_centre() const noexcept { return centre_; }
+  /// All vertices of `count` frames, on the calling thread.
+  void product(const detail::FrameFactors* frames, const detail::FrameTarget* targets,
+               std::size_t count) const noexcept;
 
   Points landmark_rest_;
   FrameOptions options_;

@@ -12,9 +12,8 @@
 namespace skinbem {
 namespace {
 
-/// Columns of a panel before those of the handles: rest positions and the six rigid modes.
+/// Columns of a panel before those of the handles: the rigid modes.
 constexpr Index kRigid = 6;
-constexpr Index kBefore = 1 + kRigid;
 constexpr auto kNumbers = static_cast<Index>(detail::kColumnNumbers);
 
 /// Ratio of the second to the first extent of the handles: below, the rotation's own error would be its inverse.
@@ -36,23 +35,17 @@ Handles::Handles(const HandleModel& model, std::span<const std::int32_t> vertice
       rows_(solution_.size(), 3),
       positions_(most + 1, 3),
       centre_(model.rest_.colwise().mean()),
-      panels_(model.panels() * static_cast<std::size_t>((kBefore + 3 * most + 3) * kNumbers), 0.0F),
-      places_(model.panels()),
+      panels_(static_cast<std::size_t>(model.vertex_count()), static_cast<std::size_t>(kRigid + 3 * most + 3)),
       weights_(static_cast<std::size_t>(solution_.size()), 0.0F) {
   std::copy(vertices.begin(), vertices.end(), vertices_.begin());
   const Points centred = model.rest_.rowwise() - centre_.transpose();
-  const auto copy_column = [&](Index column, const auto& numbers) {
-    for (Index i = 0; i < 3 * model.vertex_count(); ++i) {
-      const Index vertex = i / 3, panel = vertex / Index{detail::kPanelWidth};
-      float* to = panel_column(static_cast<std::size_t>(panel), column);
-      to[i % 3 * Index{detail::kPanelWidth} + vertex % Index{detail::kPanelWidth}] = static_cast<float>(numbers(i));
-    }
-  };
-  copy_column(0, Eigen::Map<const Eigen::VectorXd>(centred.data(), centred.size()));
-  for (Index j = 0; j < kRigid; ++j) copy_column(1 + j, model.B_.col(j));
+  panels_.set_rest(std::span(centred.data(), static_cast<std::size_t>(centred.size())));
+  for (Index j = 0; j < kRigid; ++j) {
+    panels_.set_column(static_cast<std::size_t>(j), std::span(model.B_.col(j).data(), std::size_t(model.B_.rows())));
+  }
   for (Index k = 0; k < count_; ++k) set_panel_columns(k);
   detail::repeat_rigid({}, centre_, factors_);
-  update_places();
+  update_columns();
 }
 
 void Handles::check(const HandleModel& model, std::span<const std::int32_t> vertices, Index most) {
@@ -112,12 +105,12 @@ bool Handles::release(Index k) noexcept {
   const auto last = vertices_.begin() + count_;
   std::copy(vertices_.begin() + k + 1, last, vertices_.begin() + k);
   std::copy(displacements_.data() + 3 * k + 3, displacements_.data() + 3 * count_, displacements_.data() + 3 * k);
-  for (std::size_t p = 0; p < places_.size(); ++p) {
-    float* gap = panel_column(p, kBefore + 3 * k);
-    std::copy(gap + 3 * kNumbers, panel_column(p, kBefore + 3 * count_), gap);
+  for (std::size_t p = 0; p < panels_.panels(); ++p) {
+    float* gap = handle_columns(p, k);
+    std::copy(gap + 3 * kNumbers, handle_columns(p, count_), gap);
   }
   --count_;
-  update_places();
+  update_columns();
   solve();
   return true;
 }
@@ -128,7 +121,7 @@ bool Handles::move(Index k, std::int32_t vertex) noexcept {
   if (!determined_without(k)) {
     capacitance_.remove(last);
     --count_;
-    update_places();
+    update_columns();
     solve();
     return false;
   }
@@ -152,7 +145,7 @@ bool Handles::append(std::int32_t vertex) noexcept {
   displacements_.segment<3>(3 * count_) = rows_.topRows(n).transpose().lazyProduct(solution_.head(n));
   vertices_[static_cast<std::size_t>(count_)] = vertex;
   set_panel_columns(count_++);
-  update_places();
+  update_columns();
   solve();
   return true;
 }
@@ -171,22 +164,17 @@ bool Handles::determined_without(Index k) noexcept {
 }
 
 void Handles::set_panel_columns(Index k) noexcept {
-  for (std::size_t p = 0; p < places_.size(); ++p) {
+  for (std::size_t p = 0; p < panels_.panels(); ++p) {
     const float* from = model_->columns(vertex(k), p);
-    std::copy(from, from + 3 * kNumbers, panel_column(p, kBefore + 3 * k));
+    std::copy(from, from + 3 * kNumbers, handle_columns(p, k));
   }
 }
 
-float* Handles::panel_column(std::size_t panel, Index column) noexcept {
-  const auto pitch = panels_.size() / places_.size();
-  return panels_.data() + panel * pitch + static_cast<std::size_t>(column * kNumbers);
+float* Handles::handle_columns(std::size_t panel, Index k) noexcept {
+  return panels_.column(panel, static_cast<std::size_t>(kRigid + 3 * k));
 }
 
-void Handles::update_places() noexcept {
-  const auto entries = static_cast<std::size_t>(kRigid + 3 * count_);
-  const std::size_t pitch = panels_.size() / places_.size() * sizeof(float);
-  for (std::size_t p = 0; p < places_.size(); ++p) places_[p] = {p * pitch, entries};
-}
+void Handles::update_columns() noexcept { panels_.set_columns(static_cast<std::size_t>(kRigid + 3 * count_)); }
 
 void Handles::solve() noexcept {
   const Index n = capacitance_.size();
@@ -205,11 +193,6 @@ bool Handles::set_body_motion(const RigidMotion& motion) noexcept {
   return true;
 }
 
-detail::PanelMatrix Handles::matrix() const noexcept {
-  return {reinterpret_cast<const std::byte*>(panels_.data()), places_.data(),
-          static_cast<std::size_t>(model_->vertex_count()), false};
-}
-
 detail::FrameFactors Handles::factors() const noexcept {
   detail::FrameFactors factors = factors_;
   factors.weights = weights_.data();  // not kept: it would not survive a copy
@@ -217,7 +200,7 @@ detail::FrameFactors Handles::factors() const noexcept {
 }
 
 bool Handles::evaluate(const VertexTarget& positions) const noexcept {
-  const detail::PanelMatrix panels = matrix();
+  const detail::PanelMatrix panels = panels_.matrix();
   if (!positions.holds(panels.vertices)) return false;
   const detail::FrameFactors frame = factors();
   const detail::FrameTarget target{positions.vertex(0), positions.stride};
@@ -226,11 +209,9 @@ bool Handles::evaluate(const VertexTarget& positions) const noexcept {
 }
 
 bool Handles::evaluate(const VertexTarget& positions, FrameThreads& threads) const noexcept {
-  const detail::PanelMatrix panels = matrix();
+  const detail::PanelMatrix panels = panels_.matrix();
   if (!positions.holds(panels.vertices)) return false;
-  const std::size_t bytes =
-      panels.panels() * static_cast<std::size_t>((kBefore + 3 * count_) * kNumbers) * sizeof(float);
-  threads.run(panels, bytes, factors(), {positions.vertex(0), positions.stride});
+  threads.run(panels, panels_.bytes(), factors(), {positions.vertex(0), positions.stride});
   return true;
 }
 

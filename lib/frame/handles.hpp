@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <skinbem/frame/capacitance.hpp>
+#include <skinbem/frame/column_panels.hpp>
 #include <skinbem/frame/frame_threads.hpp>
 #include <skinbem/frame/handle_model.hpp>
 #include <skinbem/frame/vertex_buffer.hpp>
@@ -70,11 +71,10 @@ class Handles {
   bool append(std::int32_t vertex) noexcept;
   bool has_handle(std::int32_t vertex) const noexcept;
   bool determined_without(Index k) noexcept;
-  float* panel_column(std::size_t panel, Index column) noexcept;
+  float* handle_columns(std::size_t panel, Index k) noexcept;
   void set_panel_columns(Index k) noexcept;
-  void update_places() noexcept;
+  void update_columns() noexcept;
   void solve() noexcept;
-  detail::PanelMatrix matrix() const noexcept;
   detail::FrameFactors factors() const noexcept;
 
   const HandleModel* model_;
@@ -87,8 +87,7 @@ class Handles {
   detail::Capacitance::Strip columns_, rows_;  ///< of the handle that comes
   Points positions_;                           ///< of the handles that would be left
   Vec3 centre_;                                ///< the packed rest positions are relative to it
-  detail::AlignedVector<float> panels_;        ///< [rest, B, X_k of the handles, room] by panels of 32 vertices
-  std::vector<detail::PanelPlace> places_;
+  detail::ColumnPanels panels_;                ///< B, X_k of the handles, room
   detail::AlignedVector<float> weights_;
   detail::FrameFactors factors_;
 };

@@ -156,7 +156,8 @@ HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std
   const std::size_t entries = matrix.places[panel].entries;
   const Columns columns(data, entries);
   const auto* column = columns.column + shift;
-  Vector sum[] = {numbers<B>(reinterpret_cast<const float*>(data) + shift, kSum)...};
+  Vector sum[] = {hn::Mul(hn::Set(Tag(), frames[B::frame(kSum)].rest),
+                          numbers<B>(reinterpret_cast<const float*>(data) + shift, kSum))...};
   for (std::size_t k = 0; k < entries; ++k, column += Columns::kStep) {
     const Vector weight[] = {hn::Set(Tag(), columns.weight(frames[kFrame], k))...};
     ((sum[kSum] = hn::MulAdd(numbers<B>(column, kSum), weight[B::frame(kSum)], sum[kSum])), ...);

@@ -55,6 +55,7 @@ struct FrameFactors {
   static constexpr std::size_t kRepeated = 3 * kHalfPanel;
 
   const float* weights = nullptr;            ///< q, one a column
+  float rest = 1;                            ///< times the rest positions
   alignas(64) float rotation[3][kRepeated];  ///< rotation[j][i] = Q(i mod 3, j)
   alignas(64) float translation[kRepeated];  ///< t(i mod 3)
 };

@@ -5,6 +5,7 @@
 
 #include <skinbem/frame/handles.hpp>
 #include <skinbem/frame/normals.hpp>
+#include <skinbem/frame/partial_frame.hpp>
 
 #include "frame/models.hpp"
 #include "meshes.hpp"
@@ -22,6 +23,8 @@ class EveryFrame {
       good = good && state->evaluate(VertexTarget{positions_}, threads_);
     }
     good = good && evaluate_batch(states_, batch_);
+    good = good && partial_.hold(whole_, moving_) && partial_.set_landmarks(displacement_.topRows(2));
+    good = good && partial_.evaluate(VertexTarget{positions_});
     const VertexSource source{positions_};
     good = good && normals_.evaluate(source, VertexTarget{buffer_, 0, 8});
     good = good && bounding_box(source, 1000).low[0] < 1e9F;
@@ -36,6 +39,8 @@ class EveryFrame {
   FrameModel int16_{skin_.rest, skin_.response, skin_.landmarks, {FrameMode::corotated, FrameStorage::int16}};
   FrameState whole_{float32_};
   FrameState half_{int16_};
+  PartialFrame partial_{float32_, 2};
+  std::vector<Index> moving_ = {4, 1};
   std::vector<FrameState> states_ = std::vector<FrameState>(5, FrameState(float32_));
   Points displacement_ = Points::Random(6, 3);
   std::vector<float> positions_ = std::vector<float>(3000);
