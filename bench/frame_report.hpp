@@ -12,6 +12,7 @@ namespace skinbem::bench {
 
 struct ReportOptions {
   bool quick = false;                         ///< fewer cases and frames: under 40 s
+  double seconds = 60;                        ///< at most, for each case, unless quick
   std::optional<std::filesystem::path> json;  ///< one row a case
 };
 

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <skinbem/base/error.hpp>
 #include <skinbem/base/rigid_fit.hpp>
+#include <skinbem/frame/compression.hpp>
 #include <skinbem/frame/frame_factors.hpp>
 
 namespace skinbem {
@@ -60,14 +62,43 @@ FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, cons
   centre_ = options.directions ? Vec3(Vec3::Zero()) : Vec3(rest.colwise().mean());
   largest_weight_ = detail::kLargestNumber / std::max(1.0, response.cwiseAbs().rowwise().sum().maxCoeff());
   const Points centred = rest.rowwise() - centre_.transpose();
-  packed_ = options.storage == FrameStorage::int16
-                ? detail::pack_int16(centred, response, options.error_bound / options.motion_range)
-                : detail::pack_float32(centred, response);
+  const double error_factor = options.error_bound / options.motion_range;
+  switch (options.storage) {
+    case FrameStorage::float32:
+      packed_ = detail::pack_float32(centred, response);
+      break;
+    case FrameStorage::int16:
+      packed_ = detail::pack_int16(centred, response, error_factor);
+      break;
+    case FrameStorage::compressed: {
+      detail::CompressedPanels compressed = detail::compress(centred, response, error_factor);
+      packed_ = std::move(compressed.basis);
+      coordinates_ = std::move(compressed.coordinates);
+      order_ = std::move(compressed.order);
+      // |U z| is at most the sum of |z| over the coordinates of a patch, which are no more than the columns of R.
+      largest_weight_ /= std::max(1.0, compressed.largest_row * static_cast<double>(response.cols()));
+    }
+  }
   if (options.mode == FrameMode::corotated && collinear_measure(landmark_rest) < kNearlyCollinear) {
     warnings_.push_back(
         "the landmarks are nearly collinear, so the rotation of the body about their line is not determined: add a "
         "landmark off the line, or use the linear frame");
   }
+}
+
+std::size_t FrameModel::weight_count() const noexcept {
+  return 3 * (coordinates_.vertices + static_cast<std::size_t>(landmark_count()));
+}
+
+void FrameModel::packed_weights(const float* q, float* weights) const noexcept {
+  std::copy(q, q + 3 * landmark_count(), weights + 3 * coordinates_.vertices);
+  if (coordinates_.vertices == 0) return;
+  detail::FrameFactors frame{};
+  frame.weights = q;
+  detail::repeat_rigid({}, Vec3::Zero(), frame);
+  const detail::FrameTarget target{weights};
+  const detail::PanelMatrix coordinates = coordinates_.matrix();
+  detail::panel_product(coordinates, 0, coordinates.panels(), &frame, &target, 1);
 }
 
 void FrameModel::product(const detail::FrameFactors* frames, const detail::FrameTarget* targets,
@@ -80,7 +111,8 @@ FrameState::FrameState(const FrameModel& model)
     : model_(&model),
       motion_(BodyMotion::at_rest(model.landmark_count())),
       candidate_(motion_),
-      weights_(static_cast<std::size_t>(motion_.weights.size()), 0.0F) {
+      q_(static_cast<std::size_t>(motion_.weights.size()), 0.0F),
+      weights_(model.weight_count(), 0.0F) {
   repeat_rigid();
 }
 
@@ -107,7 +139,8 @@ bool FrameState::accept_candidate() noexcept {
     return false;
   }
   std::swap(motion_, candidate_);
-  for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] = static_cast<float>(motion_.weights[Index(k)]);
+  for (std::size_t k = 0; k < q_.size(); ++k) q_[k] = static_cast<float>(motion_.weights[Index(k)]);
+  model_->packed_weights(q_.data(), weights_.data());
   repeat_rigid();
   return true;
 }
@@ -131,7 +164,7 @@ bool FrameState::evaluate(std::span<float> positions) const noexcept {
 bool FrameState::evaluate(const VertexTarget& positions) const noexcept {
   if (!positions.holds(model_->packed_.vertices)) return false;
   const detail::FrameFactors frame = factors();
-  const detail::FrameTarget target{positions.vertex(0), positions.stride};
+  const detail::FrameTarget target = model_->target(positions.vertex(0), positions.stride);
   model_->product(&frame, &target, 1);
   return true;
 }
@@ -139,7 +172,7 @@ bool FrameState::evaluate(const VertexTarget& positions) const noexcept {
 bool FrameState::evaluate(const VertexTarget& positions, FrameThreads& threads) const noexcept {
   const detail::PanelMatrix matrix = model_->matrix();
   if (!positions.holds(matrix.vertices)) return false;
-  threads.run(matrix, model_->bytes(), factors(), {positions.vertex(0), positions.stride});
+  threads.run(matrix, model_->packed_.data.size(), factors(), model_->target(positions.vertex(0), positions.stride));
   return true;
 }
 
@@ -159,7 +192,7 @@ bool evaluate_batch(std::span<const FrameState> frames, std::span<float> positio
     const std::size_t count = std::min(kGroup, frames.size() - begin);
     for (std::size_t f = 0; f < count; ++f) {
       factors[f] = frames[begin + f].factors();
-      targets[f] = {positions.data() + (begin + f) * frame_floats, 3};
+      targets[f] = model.target(positions.data() + (begin + f) * frame_floats, 3);
     }
     model.product(factors.data(), targets.data(), count);
   }

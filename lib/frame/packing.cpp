@@ -20,18 +20,6 @@ std::size_t panel_count(const Points& rest) {
 /// Row of a panel's column that holds component c of its vertex i: components apart.
 Index slot(Index i, Index c) { return c * kWidth + i; }
 
-/// Columns of `matrix` (node-major rows) for the vertices of panel p: 96 by #columns, components apart, padded by
-/// zeros.
-Eigen::MatrixXd panel_of(const Eigen::MatrixXd& matrix, std::size_t p) {
-  const Index first = static_cast<Index>(p) * kWidth;
-  const Index count = std::min(kWidth, matrix.rows() / 3 - first);
-  Eigen::MatrixXd panel = Eigen::MatrixXd::Zero(3 * kWidth, matrix.cols());
-  for (Index i = 0; i < count; ++i) {
-    for (Index c = 0; c < 3; ++c) panel.row(slot(i, c)) = matrix.row(3 * (first + i) + c);
-  }
-  return panel;
-}
-
 void append_rest(const Points& rest, std::size_t p, AlignedVector<std::byte>& data) {
   float values[kColumnNumbers] = {};
   const Index first = static_cast<Index>(p) * kWidth;
@@ -42,16 +30,47 @@ void append_rest(const Points& rest, std::size_t p, AlignedVector<std::byte>& da
   data.insert(data.end(), bytes, bytes + sizeof(values));
 }
 
-/// Part of a column in int16.
-struct Entry {
-  std::uint32_t column = 0;
-  float scale = 0;
-  std::array<std::int32_t, kColumnNumbers / 2> words = {};
-};
+/// Frobenius norms of the 3 by 3 blocks of `error` (a panel): 32 by #landmarks.
+Eigen::MatrixXd block_norms(const Eigen::MatrixXd& error) {
+  Eigen::MatrixXd norms(kWidth, error.cols() / 3);
+  for (Index k = 0; k < norms.cols(); ++k) {
+    const auto squares = error.middleCols<3>(3 * k).rowwise().squaredNorm().eval();
+    norms.col(k) = (squares.head(kWidth) + squares.segment(kWidth, kWidth) + squares.tail(kWidth)).cwiseSqrt();
+  }
+  return norms;
+}
 
-/// The best entry for `remainder`, which becomes what is left.
-Entry quantise(std::uint32_t column, Eigen::Ref<Eigen::VectorXd> remainder) {
-  Entry entry{column, static_cast<float>(std::ldexp(remainder.cwiseAbs().maxCoeff() / kLargestInt, -16))};
+void append_entries(const std::vector<QuantisedEntry>& entries, AlignedVector<std::byte>& data) {
+  const std::size_t begin = data.size();
+  const std::size_t list = entry_list_bytes(entries.size());
+  data.resize(begin + list + entries.size() * kQuantisedColumnBytes);
+  std::byte* which = data.data() + begin;
+  std::byte* scale = which + entries.size() * sizeof(std::uint32_t);
+  std::byte* numbers = which + list;
+  for (const QuantisedEntry& entry : entries) {
+    std::memcpy(which, &entry.column, sizeof(entry.column));
+    std::memcpy(scale, &entry.scale, sizeof(entry.scale));
+    std::memcpy(numbers, entry.words.data(), kQuantisedColumnBytes);
+    which += sizeof(entry.column);
+    scale += sizeof(entry.scale);
+    numbers += kQuantisedColumnBytes;
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd panel_of(const Eigen::MatrixXd& matrix, std::size_t p) {
+  const Index first = static_cast<Index>(p) * kWidth;
+  const Index count = std::min(kWidth, matrix.rows() / 3 - first);
+  Eigen::MatrixXd panel = Eigen::MatrixXd::Zero(3 * kWidth, matrix.cols());
+  for (Index i = 0; i < count; ++i) {
+    for (Index c = 0; c < 3; ++c) panel.row(slot(i, c)) = matrix.row(3 * (first + i) + c);
+  }
+  return panel;
+}
+
+QuantisedEntry quantise(std::uint32_t column, Eigen::Ref<Eigen::VectorXd> remainder) {
+  QuantisedEntry entry{column, static_cast<float>(std::ldexp(remainder.cwiseAbs().maxCoeff() / kLargestInt, -16))};
   if (!(entry.scale >= std::numeric_limits<float>::min())) entry.scale = 0;
   if (entry.scale == 0) return entry;
   const double unit = std::ldexp(double{entry.scale}, 16);
@@ -71,20 +90,13 @@ Entry quantise(std::uint32_t column, Eigen::Ref<Eigen::VectorXd> remainder) {
   return entry;
 }
 
-/// Frobenius norms of the 3 by 3 blocks of `error` (a panel): 32 by #landmarks.
-Eigen::MatrixXd block_norms(const Eigen::MatrixXd& error) {
-  Eigen::MatrixXd norms(kWidth, error.cols() / 3);
-  for (Index k = 0; k < norms.cols(); ++k) {
-    const auto squares = error.middleCols<3>(3 * k).rowwise().squaredNorm().eval();
-    norms.col(k) = (squares.head(kWidth) + squares.segment(kWidth, kWidth) + squares.tail(kWidth)).cwiseSqrt();
-  }
-  return norms;
-}
-
-/// Entries of a panel within `error_factor`; `panel` becomes the error.
-std::vector<Entry> quantise_panel(Eigen::MatrixXd& panel, double error_factor, double& achieved) {
-  std::vector<Entry> entries;
-  for (Index k = 0; k < panel.cols(); ++k) entries.push_back(quantise(static_cast<std::uint32_t>(k), panel.col(k)));
+std::vector<QuantisedEntry> quantise_panel(Eigen::MatrixXd& panel, std::size_t first_column, double error_factor,
+                                           double& achieved) {
+  std::vector<QuantisedEntry> entries;
+  const auto add = [&](Index k) {
+    entries.push_back(quantise(static_cast<std::uint32_t>(first_column) + static_cast<std::uint32_t>(k), panel.col(k)));
+  };
+  for (Index k = 0; k < panel.cols(); ++k) add(k);
   for (;;) {
     const Eigen::MatrixXd norms = block_norms(panel);
     Index vertex = 0;
@@ -95,30 +107,17 @@ std::vector<Entry> quantise_panel(Eigen::MatrixXd& panel, double error_factor, d
       achieved = std::max(achieved, worst);
       return entries;
     }
-    for (Index k = 3 * landmark; k < 3 * landmark + 3; ++k) {
-      entries.push_back(quantise(static_cast<std::uint32_t>(k), panel.col(k)));
-    }
+    for (Index k = 3 * landmark; k < 3 * landmark + 3; ++k) add(k);
   }
 }
 
-void append_entries(const std::vector<Entry>& entries, AlignedVector<std::byte>& data) {
-  const std::size_t begin = data.size();
-  const std::size_t list = entry_list_bytes(entries.size());
-  data.resize(begin + list + entries.size() * kQuantisedColumnBytes);
-  std::byte* which = data.data() + begin;
-  std::byte* scale = which + entries.size() * sizeof(std::uint32_t);
-  std::byte* numbers = which + list;
-  for (const Entry& entry : entries) {
-    std::memcpy(which, &entry.column, sizeof(entry.column));
-    std::memcpy(scale, &entry.scale, sizeof(entry.scale));
-    std::memcpy(numbers, entry.words.data(), kQuantisedColumnBytes);
-    which += sizeof(entry.column);
-    scale += sizeof(entry.scale);
-    numbers += kQuantisedColumnBytes;
-  }
-}
+double error_factor_of(const Eigen::MatrixXd& error) { return block_norms(error).rowwise().sum().maxCoeff(); }
 
-}  // namespace
+void append_panel(const Points& rest, std::size_t p, const std::vector<QuantisedEntry>& entries, PackedPanels& packed) {
+  packed.places.push_back({packed.data.size(), entries.size()});
+  append_rest(rest, p, packed.data);
+  append_entries(entries, packed.data);
+}
 
 PackedPanels pack_float32(const Points& rest, const Eigen::MatrixXd& response) {
   PackedPanels packed;
@@ -134,16 +133,19 @@ PackedPanels pack_float32(const Points& rest, const Eigen::MatrixXd& response) {
   return packed;
 }
 
-PackedPanels pack_int16(const Points& rest, const Eigen::MatrixXd& response, double error_factor) {
+PackedPanels pack_int16(const Points& rest, const Eigen::MatrixXd& response, double error_factor,
+                        Eigen::MatrixXd* error) {
   PackedPanels packed;
   packed.vertices = static_cast<std::size_t>(rest.rows());
   packed.quantised = true;
+  if (error) error->resizeLike(response);
   for (std::size_t p = 0; p < panel_count(rest); ++p) {
     Eigen::MatrixXd panel = panel_of(response, p);
-    const std::vector<Entry> entries = quantise_panel(panel, error_factor, packed.error_factor);
-    packed.places.push_back({packed.data.size(), entries.size()});
-    append_rest(rest, p, packed.data);
-    append_entries(entries, packed.data);
+    append_panel(rest, p, quantise_panel(panel, 0, error_factor, packed.error_factor), packed);
+    const Index first = static_cast<Index>(p) * kWidth;
+    for (Index i = 0; error && i < std::min(kWidth, rest.rows() - first); ++i) {
+      for (Index c = 0; c < 3; ++c) error->row(3 * (first + i) + c) = panel.row(slot(i, c));
+    }
   }
   return packed;
 }

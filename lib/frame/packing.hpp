@@ -3,6 +3,7 @@
 /// Rest positions and response matrix as the panels of a frame. Offline; internal to the floor.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <skinbem/base/types.hpp>
@@ -24,12 +25,39 @@ struct PackedPanels {
   PanelMatrix matrix() const { return {data.data(), places.data(), vertices, quantised}; }
 };
 
+/// Part of a column of a panel in int16.
+struct QuantisedEntry {
+  std::uint32_t column = 0;
+  float scale = 0;  ///< times 2^-16
+  std::array<std::int32_t, kColumnNumbers / 2> words = {};
+};
+
+/// The best entry for `remainder`, 96 numbers of a panel's column, which become what is left.
+QuantisedEntry quantise(std::uint32_t column, Eigen::Ref<Eigen::VectorXd> remainder);
+
+/// Rows of `matrix` (node-major, any number of columns) for the vertices of panel p: 96 by #columns, components apart,
+/// padded by zeros.
+Eigen::MatrixXd panel_of(const Eigen::MatrixXd& matrix, std::size_t p);
+
+/// max_i sum_k |E_ik| over the 32 vertices of a panel whose error is `error`, 96 by #columns.
+double error_factor_of(const Eigen::MatrixXd& error);
+
+/// Entries of a panel (96 by #columns, the first of which is number `first_column`) within `error_factor`, as of
+/// pack_int16; `panel` becomes the error, `achieved` at least its factor.
+std::vector<QuantisedEntry> quantise_panel(Eigen::MatrixXd& panel, std::size_t first_column, double error_factor,
+                                           double& achieved);
+
+/// Appends panel p of a quantised matrix.
+void append_panel(const Points& rest, std::size_t p, const std::vector<QuantisedEntry>& entries, PackedPanels& packed);
+
 /// `rest`: #V by 3. `response`: 3 #V by #columns.
 PackedPanels pack_float32(const Points& rest, const Eigen::MatrixXd& response);
 
 /// As int16 with a scale for every column of every panel, the largest magnitude in it being 32767. A panel whose error
 /// factor is above `error_factor` gets remainders, themselves int16, of the columns that matter most until it is not.
-/// Three adjacent columns belong to a landmark.
-PackedPanels pack_int16(const Points& rest, const Eigen::MatrixXd& response, double error_factor);
+/// Three adjacent columns belong to a landmark. `error`: where it is not null, what is lost, in the shape of
+/// `response`.
+PackedPanels pack_int16(const Points& rest, const Eigen::MatrixXd& response, double error_factor,
+                        Eigen::MatrixXd* error = nullptr);
 
 }  // namespace skinbem::detail

@@ -124,19 +124,21 @@ HWY_NOINLINE void store_apart(const float* packed, const FrameTarget& target, st
                               std::size_t vertices) {
   if (vertex >= vertices) return;
   const std::size_t count = std::min(kLanes, vertices - vertex);
-  float* to = target.data + vertex * target.stride;
-  if (target.stride == 3) {
-    std::memcpy(to, packed, count * 3 * sizeof(float));
+  if (target.order == nullptr && target.stride == 3) {
+    std::memcpy(target.data + vertex * 3, packed, count * 3 * sizeof(float));
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * target.stride, packed + 3 * i, 3 * sizeof(float));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t place = target.order == nullptr ? vertex + i : target.order[vertex + i];
+    std::memcpy(target.data + place * target.stride, packed + 3 * i, 3 * sizeof(float));
+  }
 }
 
 /// The vertices from `vertex` on, to memory with x, y, z adjacent.
 HWY_INLINE void move_and_store(Vector x, Vector y, Vector z, const Motion& motion, const FrameTarget& target,
                                std::size_t vertex, std::size_t vertices) {
   const Vector position[] = {motion.moved(x, y, z, 0), motion.moved(x, y, z, 1), motion.moved(x, y, z, 2)};
-  if (HWY_LIKELY(target.stride == 3 && vertex + kLanes <= vertices)) {
+  if (HWY_LIKELY(target.stride == 3 && target.order == nullptr && vertex + kLanes <= vertices)) {
     float* to = target.data + 3 * vertex;
     for (std::size_t m = 0; m < 3; ++m) hn::StoreU(position[m], Tag(), to + m * kLanes);
     return;

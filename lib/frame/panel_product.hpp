@@ -60,10 +60,12 @@ struct FrameFactors {
   alignas(64) float translation[kRepeated];  ///< t(i mod 3)
 };
 
-/// Where a frame goes: position i is written to data[i * stride + 0, 1, 2].
+/// Where a frame goes: the i-th position is written to data[v * stride + 0, 1, 2] with v = order[i], or i where there
+/// is no order.
 struct FrameTarget {
   float* data = nullptr;
   std::size_t stride = 3;
+  const std::uint32_t* order = nullptr;
 };
 
 /// Evaluates `frame_count` frames on the panels [first, last). Each number is summed in the order of the columns

@@ -18,7 +18,7 @@ class EveryFrame {
   bool run() noexcept {
     ++turn_;
     bool good = true;
-    for (FrameState* state : {&whole_, &half_}) {
+    for (FrameState* state : {&whole_, &half_, &patches_}) {
       good = good && state->set_landmarks(displacement_) && state->evaluate(VertexTarget{buffer_, 3, 8});
       good = good && state->evaluate(VertexTarget{positions_}, threads_);
     }
@@ -37,6 +37,8 @@ class EveryFrame {
   SyntheticSkin skin_ = synthetic_skin(1000, 6);
   FrameModel float32_{skin_.rest, skin_.response, skin_.landmarks};
   FrameModel int16_{skin_.rest, skin_.response, skin_.landmarks, {FrameMode::corotated, FrameStorage::int16}};
+  FrameModel compressed_{skin_.rest, skin_.response, skin_.landmarks, {FrameMode::corotated, FrameStorage::compressed}};
+  FrameState patches_{compressed_};
   FrameState whole_{float32_};
   FrameState half_{int16_};
   PartialFrame partial_{float32_, 2};

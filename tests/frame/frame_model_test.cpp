@@ -83,7 +83,8 @@ TEST(Frame, CorotatedSkinTurnsWithTheBodyThatIsDeformedAlike) {
 }
 
 class Batch : public testing::TestWithParam<FrameStorage> {};
-INSTANTIATE_TEST_SUITE_P(Storage, Batch, testing::Values(FrameStorage::float32, FrameStorage::int16));
+INSTANTIATE_TEST_SUITE_P(Storage, Batch,
+                         testing::Values(FrameStorage::float32, FrameStorage::int16, FrameStorage::compressed));
 
 TEST_P(Batch, GivesTheSameBitsAsFramesOneByOne) {
   const SyntheticSkin skin = synthetic_skin(333, 6);
@@ -102,12 +103,15 @@ TEST_P(Batch, GivesTheSameBitsAsFramesOneByOne) {
   }
 }
 
-TEST(Frame, Int16StaysWithinItsErrorBoundForAnyMotionInRange) {
+class ErrorBound : public testing::TestWithParam<FrameStorage> {};
+INSTANTIATE_TEST_SUITE_P(Storage, ErrorBound, testing::Values(FrameStorage::int16, FrameStorage::compressed));
+
+TEST_P(ErrorBound, HoldsForAnyMotionInRange) {
   for (const Index landmarks : {3, 6, 40}) {
     const SyntheticSkin skin = synthetic_skin(700, landmarks);
     const Points centred = skin.rest.rowwise() - skin.rest.colwise().mean();
     for (const double bound : {1e-2, 1e-3, 2e-5}) {
-      FrameOptions options(FrameMode::linear, FrameStorage::int16);
+      FrameOptions options(FrameMode::linear, GetParam());
       options.error_bound = bound;
       // About the origin, so that the rounding of the sum itself is small.
       const FrameModel model(centred, skin.response, skin.landmarks, options);
@@ -125,6 +129,22 @@ TEST(Frame, Int16StaysWithinItsErrorBoundForAnyMotionInRange) {
       EXPECT_GE(worst, 0.02 * model.achieved_error_bound()) << "a bound that no motion comes near says nothing";
     }
   }
+}
+
+/// Vertices in no order, each moved smoothly by many landmarks: a patch follows few directions.
+TEST(Frame, CompressedTakesAThirdOfTheBytesOfASmoothSkin) {
+  SyntheticSkin skin = synthetic_skin(4000, 40);
+  for (Index i = 0; i < 4000; ++i) {
+    for (Index k = 0; k < 40; ++k) {
+      const double distance = (skin.rest.row(i) - skin.landmarks.row(k)).norm();
+      skin.response.block<3, 3>(3 * i, 3 * k) = std::exp(-distance * distance / 40000) / 40 * Mat3::Identity();
+    }
+  }
+  const FrameModel whole(skin.rest, skin.response, skin.landmarks);
+  const FrameModel third(skin.rest, skin.response, skin.landmarks, {FrameMode::corotated, FrameStorage::compressed});
+  EXPECT_LE(third.achieved_error_bound(), 1e-3);
+  EXPECT_GT(third.achieved_error_bound(), 0);
+  EXPECT_LE(static_cast<double>(third.bytes()), static_cast<double>(whole.bytes()) / 3);
 }
 
 TEST(Frame, Int16TakesHalfTheBytes) {

@@ -20,7 +20,7 @@ using testing_support::SyntheticSkin;
 Points pose(const SyntheticSkin& skin, double angle) { return rigid_displacements(skin.landmarks, some_motion(angle)); }
 
 TEST(FrameThreads, GiveTheSameBitsHoweverMany) {
-  for (const FrameStorage storage : {FrameStorage::float32, FrameStorage::int16}) {
+  for (const FrameStorage storage : {FrameStorage::float32, FrameStorage::int16, FrameStorage::compressed}) {
     const SyntheticSkin skin = synthetic_skin(5000, 6);
     const FrameModel model(skin.rest, skin.response, skin.landmarks, {FrameMode::linear, storage});
     FrameState state(model);

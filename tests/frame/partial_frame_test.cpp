@@ -54,7 +54,8 @@ class PartialFrames : public ::testing::TestWithParam<FrameOptions> {
 
 INSTANTIATE_TEST_SUITE_P(ModesAndStorage, PartialFrames,
                          ::testing::Values(FrameOptions(FrameMode::corotated), FrameOptions(FrameMode::linear),
-                                           FrameOptions(FrameMode::corotated, FrameStorage::int16)));
+                                           FrameOptions(FrameMode::corotated, FrameStorage::int16),
+                                           FrameOptions(FrameMode::linear, FrameStorage::compressed)));
 
 TEST_P(PartialFrames, AreAtRestBeforeAnythingIsHeld) {
   EXPECT_LE((as_points(positions_of(partial_, 333)) - skin_.rest).cwiseAbs().maxCoeff(),
