@@ -55,6 +55,8 @@ inline constexpr double batch = 1e-14;
 /// The same with far points in single precision: some roundings of 6e-8 where the nine entries do not cancel.
 inline constexpr double single_precision_batch = 3e-6;
 
+/// An error smaller than this part of the tolerance is work that nobody asked for.
+inline constexpr double waste = 0.01;
 /// H and G of 42 nodes against long double, absolute: entries up to 0.5, from about six element integrals each.
 inline constexpr double reference_matrix = 1e-13;
 /// H of a rigid rotation, H u = G t of a constant strain: N element integrals, each right to some 1e-14.

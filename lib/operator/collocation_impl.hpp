@@ -202,7 +202,7 @@ template <class Kernel>
 Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options)
     : triangles_of_vertex_(triangles_around_vertices(mesh)),
       scale_(detail::power_of_two_scale(mesh)),
-      integral_(kernel, options.tolerance),
+      integral_(kernel, std::max(smallest_tolerance, options.tolerance / 2)),
       precision_(options.tolerance >= 1e-5 ? Precision::float32 : Precision::float64) {
   vertices_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;

@@ -61,10 +61,10 @@ Blocks by_rule(const Kelvin<Real>& kernel, const Corners& corners, const Vector&
   return sum;
 }
 
-/// Closed form near the triangle; far away, where it cancels, a rule whose error is below that of double.
+/// Closed form near the triangle; farther away, where it cancels, a rule whose error is below that of double.
 Blocks exact(const Kelvin<Real>& kernel, const Corners& corners, const Vector& x, int p) {
-  static const TriangleRule fine = collapsed_triangle_rule(12);
-  if (x.norm() > 6) return by_rule(kernel, corners, x, fine, p);
+  static const TriangleRule fine = collapsed_triangle_rule(20);
+  if (x.norm() > 2.5) return by_rule(kernel, corners, x, fine, p);
   const TriangleGeometry<Real> g(corners[0], corners[1], corners[2]);
   Blocks blocks;
   if (p == 1) {
@@ -88,10 +88,10 @@ double error(const Blocks& a, const Blocks& b) {
 
 class RuleLadderError : public ::testing::TestWithParam<std::tuple<double, int>> {};
 
-TEST_P(RuleLadderError, IsBelowTheToleranceAndNotAHundredthOfItAtEveryRung) {
+TEST_P(RuleLadderError, IsBelowTheToleranceAndNotATenthOfItAtEveryRung) {
   const auto [requested, p] = GetParam();
   const RuleLadder ladder(requested, p);
-  constexpr double poissons[] = {-0.5, 0.0, 0.3, 0.45, 0.5};
+  constexpr double poissons[] = {-0.9, 0.0, 0.3, 0.45, 0.5};
   Sampler sampler;
   for (const Rung& rung : ladder.rungs()) {
     double worst = 0;
@@ -108,7 +108,7 @@ TEST_P(RuleLadderError, IsBelowTheToleranceAndNotAHundredthOfItAtEveryRung) {
     EXPECT_LE(worst, std::max(requested, tolerance::rounding)) << rung.rule->degree << ' ' << rung.min_ratio2;
     const bool held_back = rung.min_ratio2 < 2.5601;  // by the model's validity, not by its tolerance
     if (!held_back && requested > 1e-11) {
-      EXPECT_GE(worst, requested / 100) << rung.rule->degree << ' ' << rung.min_ratio2;
+      EXPECT_GE(worst, requested / 10) << rung.rule->degree << ' ' << rung.min_ratio2;
     }
     RecordProperty("degree_" + std::to_string(rung.rule->degree), std::to_string(worst / requested));
   }

@@ -118,9 +118,7 @@ Mat3 principal_value(const std::vector<FanFace>& fan, double nu) {
 
 TEST(Wedge, DiagonalByRigidTranslationIsTheDirectOneAtEveryAngle) {
   for (const double nu : {0.0, 0.3, 0.5}) {
-    for (const double degrees :
-         {1.,   2.,   5.,   10.,  20.,  30.,  45.,  60.,  75.,  90.,  105., 120., 135., 150., 165., 179.,
-          180., 181., 195., 210., 225., 240., 255., 270., 285., 300., 315., 330., 345., 355., 359.}) {
+    for (int degrees = 1; degrees < 360; ++degrees) {
       const TriangleMesh mesh = wedge(degrees);
       const Eigen::MatrixXd H = Collocation<Kelvin<double>>(mesh, {nu, 1.0}, {1e-13}).double_layer_matrix();
       for (std::int32_t v = 0; v < 4; ++v) {  // the sharp edge, its corners and one more
