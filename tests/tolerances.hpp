@@ -87,4 +87,12 @@ inline constexpr double finer_skin = 0.05;
 /// R written by the program with --tolerance 1e-10, against the exactly integrated one: what the option promises.
 inline constexpr double program_response = 1e-10;
 
+/// A smooth surface through the 162 vertices of a sphere, between them: half of the facets' own distance, 0.01.
+inline constexpr double loop_sphere = 5e-3;
+/// A sparse Cholesky factorisation in double of a body of some hundred nodes: conditioned like (size / edge)^2 and, near
+/// Poisson's ratio 1/2, like lambda / mu.
+inline constexpr double finite_elements = 1e-9;
+/// Finite against boundary elements on a sphere of 642 vertices: the discretisation errors of both (measured: 0.062).
+inline constexpr double finite_against_boundary_elements = 8e-2;
+
 }  // namespace skinbem::tolerance

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of what bench/scaling and bench/error_against_time wrote with --json (needs Matplotlib).
+
+    plot_scaling.py -o FOLDER SCALING.json       time and memory against the number of vertices: scaling.png
+    plot_scaling.py -o FOLDER ERRORS.json        error against time: error_against_time.png
+"""
+import argparse
+import json
+import pathlib
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib.ticker import FuncFormatter  # noqa: E402
+
+NAME = {"bem": "boundary elements", "fem": "tetrahedral FEM"}
+COLOUR = {"bem": "#0072b2", "fem": "#d55e00"}  # distinct for colour-blind readers too
+MARKER = {"bem": "o", "fem": "s"}
+DASHES = ["-", "--", ":", "-."]
+
+
+def finished(report, **wanted):
+    """Runs with a result whose entries are as wanted, by rising number of vertices."""
+    runs = [r for r in report["runs"] if "failure" not in r and all(r.get(k) == v for k, v in wanted.items())]
+    return sorted(runs, key=lambda r: r["vertices"])
+
+
+def values(report, key):
+    return sorted({r[key] for r in report["runs"] if key in r})
+
+
+def axes_of(axis, xlabel, ylabel):
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    for scale in (axis.xaxis, axis.yaxis):
+        scale.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}"))
+    axis.set_xlabel(xlabel)
+    axis.set_ylabel(ylabel)
+    axis.grid(True, which="major", alpha=0.35)
+    axis.spines[["top", "right"]].set_visible(False)
+
+
+def exponent(report, method, threads, quantity):
+    for fit in report["exponents"]:
+        if (fit["method"], fit["threads"]) == (method, threads):
+            return f" $N^{{{fit[quantity]:.2f}}}$"
+    return ""
+
+
+def draw_quantity(axis, report, quantity, value):
+    """One line a method and number of threads for the limb, hollow marks for the skins that were given."""
+    for method in values(report, "method"):
+        for dashes, threads in zip(DASHES, values(report, "threads")):
+            label = f"{NAME[method]}, {threads} thread{'s' if threads > 1 else ''}"
+            label += exponent(report, method, threads, quantity)
+            style = {"color": COLOUR[method], "marker": MARKER[method]}
+            limb = finished(report, method=method, threads=threads, family="limb")
+            axis.plot([r["vertices"] for r in limb], [value(r) for r in limb], ls=dashes, label=label, **style)
+            given = finished(report, method=method, threads=threads, family="given")
+            axis.plot([r["vertices"] for r in given], [value(r) for r in given], ls="", mfc="none", **style)
+    axis.legend(frameon=False, fontsize=8)
+
+
+def draw_scaling(report, path):
+    figure, (time, memory) = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained")
+    axes_of(time, "vertices N", "mesh to response matrix, s")
+    axes_of(memory, "vertices N", "peak memory, GB")
+    draw_quantity(time, report, "time", lambda r: r["seconds"]["total"])
+    draw_quantity(memory, report, "memory", lambda r: r["peak_bytes"] / 1e9)
+    figure.suptitle(f"six landmarks of radius {report['landmark_radius']:g} mm on a limb; {report['processor']}", fontsize=9)
+    figure.savefig(path, dpi=130)
+
+
+def draw_errors_of(axis, report, experiment, poisson):
+    """Error against time; the number at a mark is that of the vertices."""
+    axes_of(axis, "mesh to displacements, s", "relative error (rms)")
+    axis.set_title(f"{experiment}, $\\nu$ = {poisson:g}", fontsize=10)
+    for method in values(report, "method"):
+        qualities = values({"runs": finished(report, method=method)}, "quality") or [None]
+        for dashes, quality in zip(DASHES, qualities):
+            runs = finished(report, experiment=experiment, poisson=poisson, method=method, quality=quality)
+            label = NAME[method] + (f" ({quality})" if len(qualities) > 1 else "")
+            time, error = [r["seconds"]["total"] for r in runs], [r["rms_error"] for r in runs]
+            axis.plot(time, error, ls=dashes, color=COLOUR[method], marker=MARKER[method], label=label)
+            for run, x, y in zip(runs, time, error):
+                if dashes == "-":
+                    axis.annotate(f"{run['vertices']:,}", (x, y), (4, 4), textcoords="offset points", fontsize=7,
+                                  color=COLOUR[method])
+    axis.legend(frameon=False, fontsize=8)
+
+
+def draw_errors(report, path):
+    experiments, ratios = values(report, "experiment"), values(report, "poisson")
+    figure, axes = plt.subplots(len(experiments), len(ratios), figsize=(5.2 * len(ratios), 4 * len(experiments)),
+                                layout="constrained", squeeze=False, sharex=True)
+    for row, experiment in zip(axes, experiments):
+        for axis, poisson in zip(row, ratios):
+            draw_errors_of(axis, report, experiment, poisson)
+    figure.suptitle(f"numbers: vertices of the skin; {report['processor']}", fontsize=9)
+    figure.savefig(path, dpi=130)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("reports", nargs="+", type=pathlib.Path)
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("."), help="folder of the pictures")
+    arguments = parser.parse_args()
+    for path in arguments.reports:
+        report = json.loads(path.read_text())
+        if "exponents" in report:
+            draw_scaling(report, arguments.output / "scaling.png")
+        else:
+            draw_errors(report, arguments.output / "error_against_time.png")
+
+
+if __name__ == "__main__":
+    main()
