@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A frame: rest position + R q, then the rigid motion, for skins of 606 to 50,000 vertices and six landmarks. Beside it
 // Eigen and OpenBLAS do the same product on the same numbers (y = x + R q; they leave out the rigid motion).
-// With --quick, --report, --seconds S (at most, a case) or --json FILE: percentiles and ratios, see frame_report.hpp.
-// Counter `bytes_per_second`: R, rest position, output and the cache line that a write fetches first.
+// With --quick, --report, --busy, --seconds S (at most, a case) or --json FILE: percentiles and ratios, see
+// frame_report.hpp. Counter `bytes_per_second`: R, rest position, output and the cache line that a write fetches first.
 #include <benchmark/benchmark.h>
 #include <cblas.h>
 
@@ -127,7 +127,7 @@ BENCHMARK(read_bandwidth)->Apply(sizes);
 
 }  // namespace
 
-/// Google Benchmark's own options, or the long measurement: [--quick | --report] [--seconds S] [--json FILE].
+/// Google Benchmark's own options, or the long measurement: [--quick | --report] [--busy] [--seconds S] [--json FILE].
 int main(int argc, char** argv) {
   skinbem::bench::ReportOptions options;
   bool report = false;
@@ -137,6 +137,8 @@ int main(int argc, char** argv) {
       report = options.quick = true;
     } else if (argument == "--report") {
       report = true;
+    } else if (argument == "--busy") {
+      report = options.busy = true;
     } else if (argument == "--seconds" && i + 1 < argc) {
       report = true;
       options.seconds = std::atof(argv[++i]);
