@@ -27,6 +27,8 @@ constexpr std::size_t kPieceBytes = 64 * 1024;
 /// Share of the time that late helpers may cost, and the wait that counts as late.
 constexpr double kLateShare = 0.1;
 constexpr double kLateSeconds = 20e-6;
+/// One frame in so many is evaluated alone, to know what help gains.
+constexpr std::uint32_t kFramesToCompare = 64;
 /// No model is as large.
 constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
@@ -66,6 +68,8 @@ struct FrameThreads::Crew {
 
   std::size_t least_bytes = 0;
   std::uint64_t frames_alone = 0;  // still to go without help
+  std::size_t alone_bytes = 0;     // of the model whose frames alone took
+  double alone_seconds = 0;        // this long, a running mean; 0: not known
   std::uint32_t frame_number = 0;
   std::vector<std::thread> helpers;
 
@@ -120,11 +124,24 @@ struct FrameThreads::Crew {
     work(true);
     const auto own_end = Clock::now();
     while (done.load(std::memory_order_acquire) != pieces) pause_briefly();
-    const double waited = std::chrono::duration<double>(Clock::now() - own_end).count();
-    if (waited > kLateSeconds) {
-      const double worked = std::chrono::duration<double>(own_end - begin).count();
-      frames_alone = static_cast<std::uint64_t>(waited / (kLateShare * std::max(worked, 1e-6)));
-    }
+    const auto end = Clock::now();
+    const double waited = std::chrono::duration<double>(end - own_end).count();
+    const double together = std::chrono::duration<double>(end - begin).count();
+    // Late, or on the caller's own core, which shows only beside frames alone.
+    double lost = waited > kLateSeconds ? waited : 0;
+    if (alone_seconds > 0) lost = std::max(lost, together - alone_seconds);
+    const double usual = alone_seconds > 0 ? alone_seconds : together - waited;
+    frames_alone = static_cast<std::uint64_t>(lost / (kLateShare * std::max(usual, 1e-6)));
+  }
+
+  void run_alone(const detail::PanelMatrix& whole, std::size_t bytes, const detail::FrameFactors& factors,
+                 const detail::FrameTarget& to) noexcept {
+    const auto begin = Clock::now();
+    detail::panel_product(whole, 0, whole.panels(), &factors, &to, 1);
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    constexpr double kNewShare = 0.2;
+    alone_seconds = bytes == alone_bytes ? alone_seconds + kNewShare * (seconds - alone_seconds) : seconds;
+    alone_bytes = bytes;
   }
 };
 
@@ -164,7 +181,6 @@ void FrameThreads::measure_least_bytes() {
     crew_->least_bytes = bytes;
     if (best[1] < kPays * best[0]) return;
   }
-  crew_->least_bytes = kNever;
 }
 
 FrameThreads::~FrameThreads() {
@@ -179,19 +195,25 @@ int FrameThreads::count() const noexcept { return static_cast<int>(crew_->helper
 void FrameThreads::run(const detail::PanelMatrix& matrix, std::size_t bytes, const detail::FrameFactors& frame,
                        const detail::FrameTarget& target) noexcept {
   Crew& crew = *crew_;
-  const bool together =
+  const bool owner =
       bytes >= crew.least_bytes && !crew.helpers.empty() && !crew.busy.test_and_set(std::memory_order_acquire);
-  if (together && crew.frames_alone == 0) {
+  if (!owner) {
+    detail::panel_product(matrix, 0, matrix.panels(), &frame, &target, 1);
+    return;
+  }
+  const bool compare = bytes != crew.alone_bytes || crew.frame_number % kFramesToCompare == 0;
+  if (crew.frames_alone > 0 || compare) {
+    crew.run_alone(matrix, bytes, frame, target);
+    crew.frames_alone -= crew.frames_alone > 0;
+    ++crew.frame_number;
+  } else {
     crew.matrix = matrix;
     crew.frame = frame;
     crew.target = target;
     crew.piece_panels = std::max<std::size_t>(1, kPieceBytes * matrix.panels() / bytes);
     crew.run_together();
-  } else {
-    detail::panel_product(matrix, 0, matrix.panels(), &frame, &target, 1);
-    if (together) --crew.frames_alone;
   }
-  if (together) crew.busy.clear(std::memory_order_release);
+  crew.busy.clear(std::memory_order_release);
 }
 
 }  // namespace skinbem

@@ -13,7 +13,8 @@ namespace skinbem {
 /// Threads that help with frames (FrameState::evaluate). The calling thread never waits for a helper to begin: it works
 /// through the skin from the front while helpers that are awake take pieces from the back, and at the end waits only
 /// for pieces already begun. Per frame there is no lock, no system call and no allocation. A helper that was late, as
-/// on a busy core, is not asked again until what was lost is a small share of the time. Helpers spin for some 50 us
+/// on a busy core, or who took the caller's own core, is not asked again until what was lost is a small share of the
+/// time; one frame in 64 is evaluated alone for comparison. Helpers spin for some 50 us
 /// after a frame, then look for the next one every 50 us, after a tenth of a second without frames every millisecond.
 ///
 /// One object serves any number of states; while it works for one thread, others evaluate alone. The result has the
@@ -30,7 +31,8 @@ class FrameThreads {
   FrameThreads& operator=(const FrameThreads&) = delete;
 
   int count() const noexcept;
-  /// Bytes of a model from which on others help; the largest number where help never paid, as on a single core.
+  /// Bytes of a model from which on others help: 64 KiB to 4 MiB where it was measured, the largest number for one
+  /// thread.
   std::size_t least_bytes() const noexcept;
 
   /// All panels of one frame. What FrameState::evaluate calls.
