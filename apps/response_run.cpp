@@ -60,6 +60,8 @@ void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
   skinbem::ResponseOptions solve;
   solve.poisson = options.poisson;
   solve.tolerance = options.tolerance;
+  solve.solver = options.solver;
+  solve.memory_limit = static_cast<std::size_t>(options.memory_gigabytes * 1e9);
   solve.progress = terminal_progress();
   solve.validate();
   skinbem::ResponseModel model(run.mesh, solve);
@@ -72,7 +74,8 @@ void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
   }
   run.positions = model.landmark_positions();
   const skinbem::ResponseSummary& summary = model.summary();
-  run.report.solver = "dense";
+  run.report.solver = skinbem::name_of(summary.prediction.solver);
+  run.report.predicted = {summary.prediction.seconds, static_cast<std::int64_t>(summary.prediction.bytes)};
   run.report.poisson = options.poisson;
   run.report.tolerance = options.tolerance;
   run.report.estimated_error = summary.estimated_error;
@@ -93,8 +96,13 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
   command.add_option("--radius", options.radius, "Of landmarks whose file gives none, unit of the mesh; 0: a point")
       ->check(number([](double value) { return value >= 0; }, "a length, zero or more"))
       ->capture_default_str();
-  command.add_option("--solver", options.solver, "How the equations are solved: auto or dense")
-      ->check(word<int>({{"auto", 0}, {"dense", 0}}))
+  command.add_option("--solver", options.solver, "How the equations are solved: auto, dense or hmatrix (compressed)")
+      ->transform(word<skinbem::Solver>({{"auto", skinbem::Solver::automatic},
+                                         {"dense", skinbem::Solver::dense},
+                                         {"hmatrix", skinbem::Solver::hmatrix}}))
+      ->default_str("auto");
+  command.add_option("--memory", options.memory_gigabytes, "GB that may be used; 0: what the system has available")
+      ->check(number([](double value) { return value >= 0; }, "a size in GB, zero or more"))
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance, "Relative error of the response, 1e-12 to 1e-1")
       ->capture_default_str();

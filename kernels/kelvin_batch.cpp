@@ -243,6 +243,43 @@ void single_layer_of_panel(const Kelvin<double>& kernel, const PointPanel& panel
   });
 }
 
+void dipoles_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, const Dipoles& dipoles, double* to) {
+  const D64 d;
+  using V = hn::Vec<D64>;
+  const auto every_lane = hn::FirstN(d, hn::Lanes(d));
+  for (std::size_t first = 0; first < kPanel; first += hn::Lanes(d)) {
+    const V x = hn::Load(d, panel.x + first);
+    const V y = hn::Load(d, panel.y + first);
+    const V z = hn::Load(d, panel.z + first);
+    for (std::size_t q = 0; q < dipoles.count; ++q) {
+      const double normal[3] = {dipoles.normal[0][q], dipoles.normal[1][q], dipoles.normal[2][q]};
+      const V rx = hn::Sub(hn::Set(d, dipoles.x[q]), x);
+      const V ry = hn::Sub(hn::Set(d, dipoles.y[q]), y);
+      const V rz = hn::Sub(hn::Set(d, dipoles.z[q]), z);
+      const V r1 = inverse_root(d, hn::MulAdd(rz, rz, hn::MulAdd(ry, ry, hn::Mul(rx, rx))));
+      const V r_2 = hn::Mul(r1, r1);
+      const V r3 = hn::Mul(r1, r_2);
+      Sums<V> s;
+      s.x = hn::Mul(rx, r3);
+      s.y = hn::Mul(ry, r3);
+      s.z = hn::Mul(rz, r3);
+      const V px = hn::Mul(s.x, r_2);
+      const V py = hn::Mul(s.y, r_2);
+      s.xx = hn::Mul(px, rx);
+      s.xy = hn::Mul(px, ry);
+      s.xz = hn::Mul(px, rz);
+      s.yy = hn::Mul(py, ry);
+      s.yz = hn::Mul(py, rz);
+      s.zz = hn::Mul(hn::Mul(s.z, r_2), rz);
+      const V height = hn::MulAdd(rz, hn::Set(d, normal[2]),
+                                  hn::MulAdd(ry, hn::Set(d, normal[1]), hn::Mul(rx, hn::Set(d, normal[0]))));
+      double* const out = to + q * 9 * kPanel + first;
+      for (std::size_t e = 0; e < 9; ++e) hn::Store(hn::Zero(d), d, out + e * kPanel);
+      add_traction(d, every_lane, kernel, normal, height, s, out);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace skinbem
 HWY_AFTER_NAMESPACE();
@@ -253,6 +290,7 @@ namespace skinbem {
 HWY_EXPORT(double_layer_of_panel);
 HWY_EXPORT(double_layer_of_panel_f32);
 HWY_EXPORT(single_layer_of_panel);
+HWY_EXPORT(dipoles_of_panel);
 
 void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
                       const Eigen::Vector3d& n, double* const out[3], Precision precision) {
@@ -266,6 +304,11 @@ void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, Pan
 void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
                       double* out) {
   HWY_DYNAMIC_DISPATCH(single_layer_of_panel)(kernel, panel, mask, source, out);
+}
+
+void double_layer_of_dipoles(const Kelvin<double>& kernel, const PointPanel& panel, const Dipoles& dipoles,
+                             double* out) {
+  HWY_DYNAMIC_DISPATCH(dipoles_of_panel)(kernel, panel, dipoles, out);
 }
 
 const char* instruction_set() {

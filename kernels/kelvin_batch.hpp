@@ -20,6 +20,10 @@ void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, Pan
 void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
                       double* out);
 
+/// As the template in panel.hpp.
+void double_layer_of_dipoles(const Kelvin<double>& kernel, const PointPanel& panel, const Dipoles& dipoles,
+                             double* out);
+
 /// Name of the instruction set in use, such as "AVX3".
 const char* instruction_set();
 

@@ -41,6 +41,32 @@ struct SourcePoints {
   const double* weights[3];  ///< weight x area x hat function of each vertex
 };
 
+/// Point sources of the double layer: places and unit normals; #count each.
+struct Dipoles {
+  std::size_t count;
+  const double* x;
+  const double* y;
+  const double* z;
+  const double* normal[3];
+};
+
+/// The double layer's values T_ij(x_p; y_q, n_q) of every dipole q at every point p of a panel, to
+/// out[(q components^2 + components i + j) kPanel + p], aligned to 64 bytes. No point may be a dipole's place.
+template <class Kernel>
+void double_layer_of_dipoles(const Kernel& kernel, const PointPanel& panel, const Dipoles& dipoles, double* out) {
+  constexpr int entries = Kernel::components * Kernel::components;
+  for (std::size_t q = 0; q < dipoles.count; ++q) {
+    const Eigen::Vector3d y(dipoles.x[q], dipoles.y[q], dipoles.z[q]);
+    const Eigen::Vector3d n(dipoles.normal[0][q], dipoles.normal[1][q], dipoles.normal[2][q]);
+    for (std::size_t p = 0; p < kPanel; ++p) {
+      const typename Kernel::Block value = kernel.double_layer(y - panel.point(p), n);
+      for (int e = 0; e < entries; ++e) {
+        out[(q * entries + e) * kPanel + p] = value(e / Kernel::components, e % Kernel::components);
+      }
+    }
+  }
+}
+
 /// Adds int N_v T_ij dS at the points of `mask` to out[v][(components i + j) kPanel + p], v = 0, 1, 2; n is the
 /// triangle's unit normal. Each out[v] is aligned to 64 bytes. float32 is a permission, which this version does not
 /// use.

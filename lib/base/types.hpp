@@ -21,6 +21,9 @@ using Triangles = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor
 /// Dense matrix stored row by row.
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Some long vectors side by side, stored row by row: an operator is applied to all of them at once.
+using VectorBlock = RowMajorMatrix;
+
 /// A proper rigid motion x -> rotation x + translation.
 struct RigidMotion {
   Mat3 rotation = Mat3::Identity();

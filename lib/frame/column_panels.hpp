@@ -3,7 +3,7 @@
 /// Panels in single precision whose columns come and go within a frame. Internal to the floor.
 #pragma once
 
-#include <skinbem/frame/aligned_buffer.hpp>
+#include <skinbem/base/aligned_buffer.hpp>
 #include <skinbem/frame/panel_product.hpp>
 
 #include <vector>

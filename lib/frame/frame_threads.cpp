@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <skinbem/base/error.hpp>
-#include <skinbem/frame/aligned_buffer.hpp>
+#include <skinbem/base/aligned_buffer.hpp>
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <immintrin.h>

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include <skinbem/frame/aligned_buffer.hpp>
+#include <skinbem/base/aligned_buffer.hpp>
 #include <skinbem/response/response_model.hpp>
 
 namespace skinbem {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <skinbem/base/types.hpp>
-#include <skinbem/frame/aligned_buffer.hpp>
+#include <skinbem/base/aligned_buffer.hpp>
 #include <skinbem/frame/panel_product.hpp>
 
 namespace skinbem::detail {

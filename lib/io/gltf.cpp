@@ -10,7 +10,7 @@
 
 #include <skinbem/base/atomic_file.hpp>
 #include <skinbem/base/error.hpp>
-#include <skinbem/io/vertex_normals.hpp>
+#include <skinbem/mesh/vertex_normals.hpp>
 
 namespace skinbem {
 namespace {

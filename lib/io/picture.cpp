@@ -7,7 +7,7 @@
 #include <limits>
 
 #include <skinbem/base/error.hpp>
-#include <skinbem/io/vertex_normals.hpp>
+#include <skinbem/mesh/vertex_normals.hpp>
 
 namespace skinbem {
 namespace {

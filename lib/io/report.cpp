@@ -43,7 +43,10 @@ std::string to_json(const RunReport& r) {
                 {"factor", finite("seconds.factor", s.factor)},
                 {"solve", finite("seconds.solve", s.solve)},
                 {"total", finite("seconds.total", s.total)}}},
-              {"peak_bytes", r.peak_bytes}}
+              {"peak_bytes", r.peak_bytes},
+              {"predicted", r.predicted ? json{{"seconds", finite("predicted.seconds", r.predicted->seconds)},
+                                               {"bytes", r.predicted->bytes}}
+                                        : json(nullptr)}}
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -23,6 +23,11 @@ struct RunReport {
   std::optional<double> residual;         ///< worst relative residual of a column
   std::optional<int> iterations;
   int threads = 1;
+  struct Predicted {
+    double seconds = 0;
+    std::int64_t bytes = 0;
+  };
+  std::optional<Predicted> predicted;  ///< what the solver was expected to take
   struct Seconds {
     double read = 0, assemble = 0, factor = 0, solve = 0, total = 0;
   } seconds;
@@ -31,7 +36,8 @@ struct RunReport {
 
 /// One JSON object on one line. The keys are a contract: version, mesh {vertices, triangles, volume}, landmarks,
 /// poisson, solver, tolerance, estimated_error, residual, iterations, threads, seconds {read, assemble, factor, solve,
-/// total}, peak_bytes. What is empty is null. Throws Error(numerical) when a number is not finite.
+/// total}, peak_bytes, predicted {seconds, bytes}. What is empty is null. Throws Error(numerical) when a number is not
+/// finite.
 std::string to_json(const RunReport& report);
 
 /// The same in a few lines for people.

@@ -4,6 +4,7 @@
 /// entries are made. Everything above (dense matrix, compression, landmark columns) asks for blocks of it.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -41,14 +42,22 @@ class Collocation {
   Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options = {});
 
   Index node_count() const { return static_cast<Index>(vertices_.size()); }
+  const Kernel& kernel() const { return integral_.kernel(); }
 
   /// The double layer's matrix H of c u + int T u dS, dense, square: off the diagonal int N_l T(x_k, .) dS, diagonal
   /// blocks by rigid translation, so that H 1 = 0 (and free term and principal value never appear). For an exterior
   /// problem: I - H.
   RowMajorMatrix double_layer_matrix(const Progress& progress = {}, AssemblyCounts* counts = nullptr) const;
 
-  /// The rows and columns of H that belong to these vertices, written to `out`: components #rows by components
-  /// #columns. Diagonal blocks (a vertex in both lists) are left zero. One thread.
+  /// The rows and columns of H that belong to these vertices, as they are made: kPanel rows at a time. Calls
+  /// store(first, count, entries) for rows first to first + count - 1, with entry (i, j) of row first + p and column c
+  /// in entries[(c components^2 + components i + j) kPanel + p], aligned to 64 bytes, zero for p >= count. Diagonal
+  /// blocks (a vertex in both lists) are left zero. One thread; any number of calls at a time.
+  void for_double_layer_panels(
+      std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+      const std::function<void(std::size_t first, std::size_t count, const double* entries)>& store) const;
+
+  /// The same as a matrix, written to `out`: components #rows by components #columns.
   void double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
                           Eigen::Ref<Eigen::MatrixXd> out) const;
 

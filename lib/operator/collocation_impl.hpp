@@ -351,11 +351,12 @@ RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress
 }
 
 template <class Kernel>
-void Collocation<Kernel>::double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
-                                             Eigen::Ref<Eigen::MatrixXd> out) const {
+void Collocation<Kernel>::for_double_layer_panels(
+    std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+    const std::function<void(std::size_t, std::size_t, const double*)>& store) const {
   thread_local std::vector<std::int32_t> slots;
   thread_local ColumnBlock block;
-  slots.resize(vertices_.size(), -1);
+  slots.resize(std::max(slots.size(), vertices_.size()), -1);
   for (std::size_t c = 0; c < columns.size(); ++c) slots[columns[c]] = static_cast<std::int32_t>(c);
   const std::vector<std::int32_t> triangles = triangles_around(columns);
 
@@ -363,14 +364,25 @@ void Collocation<Kernel>::double_layer_block(std::span<const std::int32_t> rows,
     const Panel panel(vertices_, rows.subspan(first, std::min(kPanel, rows.size() - first)));
     block.prepare(slots, columns.size());
     for (const std::int32_t t : triangles) add_triangle(panel, t, block);
-    for (std::size_t p = 0; p < panel.count; ++p) {
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        out.template block<components, components>(components * Index(first + p), components * Index(c)) =
-            block.entry(c, p);
-      }
-    }
+    store(first, panel.count, block.slot(0));
   }
   for (const std::int32_t v : columns) slots[v] = -1;
+}
+
+template <class Kernel>
+void Collocation<Kernel>::double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+                                             Eigen::Ref<Eigen::MatrixXd> out) const {
+  constexpr int entries = components * components;
+  for_double_layer_panels(rows, columns, [&](std::size_t first, std::size_t count, const double* values) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      for (int e = 0; e < entries; ++e) {
+        const double* from = values + (c * entries + e) * kPanel;
+        for (std::size_t p = 0; p < count; ++p) {
+          out(components * Index(first + p) + e / components, components * Index(c) + e % components) = from[p];
+        }
+      }
+    }
+  });
 }
 
 template <class Kernel>

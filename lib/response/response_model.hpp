@@ -10,7 +10,7 @@
 #include <skinbem/base/progress.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
 #include <skinbem/response/landmark_patch.hpp>
-#include <skinbem/solve/neumann_solver.hpp>
+#include <skinbem/solve/solver_choice.hpp>
 
 namespace skinbem {
 
@@ -20,6 +20,8 @@ struct ResponseOptions {
   double poisson = 0.45;
   /// Of max|R - R_d| / max|R_d|, R_d the exactly integrated P1 collocation result; 1e-12 to 1e-1.
   double tolerance = 1e-6;
+  Solver solver = Solver::automatic;
+  std::size_t memory_limit = 0;  ///< bytes; 0: what the system has available
   Progress progress = {};
 
   /// Throws Error(usage) naming the value that is out of its range.
@@ -28,12 +30,14 @@ struct ResponseOptions {
 
 /// How it went. Times in seconds.
 struct ResponseSummary {
+  SolverPrediction prediction;  ///< which solver was taken, and what it was expected to take
   double assemble_seconds = 0;
   double factor_seconds = 0;
   double solve_seconds = 0;
-  double near_share = 0;  ///< of vertex-triangle pairs, integrated in closed form
-  /// Of R, relative to its largest entry: the smaller of the quadrature tolerance and what rotations show of its error,
-  /// plus the residual.
+  double near_share = 0;  ///< of vertex-triangle pairs, integrated in closed form; dense only
+  /// Of R, relative to its largest entry. Dense: the smaller of the quadrature tolerance and what rotations show of its
+  /// error, plus the residual. Compressed: the quadrature tolerance plus half the residual of the H that was not
+  /// compressed, from rows drawn at random.
   double estimated_error = 0;
   double residual = 0;  ///< largest of the solves so far
   int iterations = 0;   ///< most of the solves so far
@@ -60,7 +64,7 @@ struct GreensFunctions {
 /// Equal to the mixed system [H_U, -G_K][u_U; t_K] = -H_K u_K of Tang (2010) up to rounding and amplified |H B|.
 class ResponseModel {
  public:
-  /// Assembles and factorises. The mesh must bound a body (validate.hpp) and is copied. Throws Error.
+  /// Assembles and factorises or compresses. The mesh must bound a body (validate.hpp) and is copied. Throws Error.
   ResponseModel(const TriangleMesh& mesh, const ResponseOptions& options = {});
   ~ResponseModel();
   ResponseModel(ResponseModel&&) noexcept;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <sstream>
 
-#include <skinbem/solve/lapack.hpp>
+#include <skinbem/base/lapack.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 
 namespace skinbem {
@@ -36,6 +36,7 @@ class DenseSolver final : public NeumannSolver {
               << tolerance_ << "; check the mesh and Poisson's ratio";
       throw Error(ErrorCode::numerical, message.str());
     }
+    ended.sampled_residual = ended.residual;
     if (summary) *summary = ended;
     return Y;
   }

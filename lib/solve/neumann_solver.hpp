@@ -7,6 +7,7 @@
 
 #include <skinbem/base/progress.hpp>
 #include <skinbem/base/types.hpp>
+#include <skinbem/hmatrix/compressed_matrix.hpp>
 
 namespace skinbem {
 
@@ -14,6 +15,8 @@ namespace skinbem {
 struct SolveSummary {
   int iterations = 0;   ///< block iterations, or steps of refinement after a direct factorisation
   double residual = 0;  ///< largest over the columns of |(H + B B^T) y - g| / |g|, computed, not estimated
+  /// The same with the H that was not compressed, from rows drawn at random; the same as residual for a dense H.
+  double sampled_residual = 0;
 };
 
 /// (H + B B^T)^-1: H the double layer's matrix (3N by 3N, null space the rigid motions), B their orthonormal basis
@@ -25,12 +28,29 @@ class NeumannSolver {
   /// Y (3N by #columns) with (H + B B^T) Y = G, to the tolerance it was made with. Throws Error(numerical) with the
   /// residual that was reached where it cannot.
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary = nullptr) const = 0;
-  /// H times V.
+  /// H times V, as the solver has it.
   virtual Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const = 0;
 };
 
 /// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that
 /// does not converge, LU in double. Takes H; B is 3N by 6. Throws Error(numerical) for a singular system.
 std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance);
+
+/// What the iterative solver needs to know.
+struct IterativeOptions {
+  CompressionOptions compression;
+  double residual = 5e-4;  ///< at which a column has converged
+  bool single = true;      ///< matrix in single precision
+
+  /// For a response to `tolerance`, as measured on legs, slabs and boxes (docs/accuracy.md).
+  static IterativeOptions for_tolerance(double tolerance);
+};
+
+/// Iterative: block GMRES on a compressed H, preconditioned by Schwarz's method. Throws Error(numerical) with the
+/// residual where it does not converge.
+std::unique_ptr<NeumannSolver> make_iterative_solver(const TriangleMesh& mesh,
+                                                     const Collocation<Kelvin<double>>& collocation,
+                                                     const Eigen::MatrixXd& B, const IterativeOptions& options,
+                                                     const Progress& progress = {});
 
 }  // namespace skinbem

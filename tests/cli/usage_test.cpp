@@ -48,7 +48,7 @@ TEST_F(Usage, ValuesOutOfRangeAreNamedWithCode2AndWriteNothing) {
       {"--poisson", "0.7"},    {"--poisson", "-1"},    {"--poisson", "nan"},   {"--poisson", "abc"},
       {"--tolerance", "0"},    {"--tolerance", "1"},   {"--tolerance", "nan"}, {"--radius", "-1"},
       {"--radius", "inf"},     {"--threads", "-1"},    {"--threads", "1.5"},   {"--threads", "100000"},
-      {"--solver", "hmatrix"}, {"--solver", "direct"},
+      {"--solver", "direct"},  {"--memory", "-1"},     {"--memory", "1e-6"},
   };
   for (const auto& [option, value] : wrong) {
     const Outcome outcome = run(Arguments{"response"} + box() + Arguments{"-o", path("R.npy"), option, value});
@@ -57,8 +57,10 @@ TEST_F(Usage, ValuesOutOfRangeAreNamedWithCode2AndWriteNothing) {
     EXPECT_EQ(outcome.out, "");
   }
   EXPECT_TRUE(written().empty());
-  expect_failure(run(Arguments{"response"} + box() + Arguments{"-o", path("R.npy"), "--solver", "hmatrix"}), 2,
-                 "--solver: 'hmatrix' is not known, choose one of: auto, dense");
+  expect_failure(run(Arguments{"response"} + box() + Arguments{"-o", path("R.npy"), "--solver", "direct"}), 2,
+                 "--solver: 'direct' is not known, choose one of: auto, dense, hmatrix");
+  expect_failure(run(Arguments{"response"} + box() + Arguments{"-o", path("R.npy"), "--memory", "0.001"}), 2,
+                 "not enough memory for 18 vertices");
 }
 
 TEST_F(Usage, ValuesOfAnimateOutOfRangeAreNamedWithCode2) {

@@ -33,7 +33,7 @@ TEST(Report, JsonHasTheKeysOfTheContractInTheirOrder) {
   for (const auto& item : object.items()) keys.push_back(item.key());
   EXPECT_THAT(keys,
               testing::ElementsAre("version", "mesh", "landmarks", "poisson", "solver", "tolerance", "estimated_error",
-                                   "residual", "iterations", "threads", "seconds", "peak_bytes"));
+                                   "residual", "iterations", "threads", "seconds", "peak_bytes", "predicted"));
   EXPECT_EQ(object["mesh"].dump(), R"({"vertices":606,"triangles":1208,"volume":2500000.0})");
   EXPECT_EQ(object["seconds"].size(), 5u);
   EXPECT_TRUE(object["iterations"].is_null());

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -42,6 +43,25 @@ struct CacheLineAllocator {
     return std::align_val_t{n * sizeof(T) >= kHugeFrom ? kHugePage : 64};
   }
   friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) noexcept { return true; }
+};
+
+/// Storage that nobody has written to yet: its pages come with the first write, from the thread that writes.
+template <class T>
+class Uninitialised {
+ public:
+  Uninitialised() = default;
+  explicit Uninitialised(std::size_t size) : size_(size), data_(CacheLineAllocator<T>().allocate(size), Free{size}) {}
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  struct Free {
+    std::size_t size = 0;
+    void operator()(T* p) const noexcept { CacheLineAllocator<T>().deallocate(p, size); }
+  };
+  std::size_t size_ = 0;
+  std::unique_ptr<T, Free> data_;
 };
 
 template <class T>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Normals at the vertices, for shading.
+/// Normals at the vertices.
 #pragma once
 
 #include <skinbem/mesh/triangle_mesh.hpp>

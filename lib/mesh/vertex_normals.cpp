@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 
-#include <skinbem/io/vertex_normals.hpp>
+#include <skinbem/mesh/vertex_normals.hpp>
 
 namespace skinbem {
 namespace {

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/hmatrix/compressed_matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <skinbem/base/stopwatch.hpp>
+
+namespace skinbem {
+namespace {
+
+Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
+
+/// Degrees of freedom of a leaf, filled up to whole panels.
+WorkRange dofs_of(const Cluster& leaf, int components) {
+  return {Index(leaf.begin) * components, round_up(leaf.size(), kPanel) * components};
+}
+
+/// Where a degree of freedom stands in the tree's order.
+Index dof_row(std::int32_t place, int component, int components) {
+  const Index panel = place / Index(kPanel);
+  return (panel * components + component) * Index(kPanel) + place % Index(kPanel);
+}
+
+/// Skeletons as lists of points, each once.
+struct SkeletonPoints {
+  std::vector<std::int32_t> points;
+  std::vector<std::int32_t> of_dof;
+};
+
+std::vector<SkeletonPoints> points_of(const std::vector<ClusterBasis>& bases) {
+  std::vector<SkeletonPoints> result(bases.size());
+  for (std::size_t c = 0; c < bases.size(); ++c) {
+    auto& [points, of_dof] = result[c];
+    for (const Dof& dof : bases[c].skeleton) points.push_back(dof.point);
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    for (const Dof& dof : bases[c].skeleton) {
+      of_dof.push_back(std::int32_t(std::lower_bound(points.begin(), points.end(), dof.point) - points.begin()));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+template <class T>
+CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
+                                      const CompressionOptions& options, const Progress& progress)
+    : tree_(mesh), partition_(tree_, options.eta), rows_(round_up(mesh.vertex_count(), kPanel) * components) {
+  leaf_of_place_.resize(mesh.vertex_count());
+  for (const std::int32_t leaf : tree_.leaves()) {
+    std::fill(leaf_of_place_.begin() + tree_.clusters()[leaf].begin,
+              leaf_of_place_.begin() + tree_.clusters()[leaf].end, leaf);
+  }
+  Stopwatch watch;
+  const PointKernel<Kelvin<double>> kernel(mesh, tree_, collocation.kernel());
+  report(progress, "compress", 0);
+  const NestedBases bases =
+      make_nested_bases(mesh, tree_, partition_, collocation, kernel, {options.tolerance, options.samples});
+  plan(bases);
+  fill_bases(bases);
+  summary_.basis_seconds = watch.lap();
+  fill_couplings(bases, kernel);
+  summary_.coupling_seconds = watch.lap();
+  fill_near(collocation, progress);
+  set_diagonal();
+  summary_.near_seconds = watch.lap();
+}
+
+/// Lays out workspace and schedule: vectors in, coefficients of column skeletons from the leaves up, those of row
+/// skeletons from the root down, vectors out.
+template <class T>
+void CompressedMatrix<T>::plan(const NestedBases& bases) {
+  const auto& clusters = tree_.clusters();
+  const std::size_t count = clusters.size();
+  Index end = rows_;
+  const auto reserve = [&](std::size_t rank) {
+    const WorkRange range{end, round_up(Index(rank), kTileStep)};
+    end += range.length;
+    return range;
+  };
+  std::vector<WorkRange> column_coefficients(count), row_coefficients(count);
+  for (std::size_t c = 0; c < count; ++c) column_coefficients[c] = reserve(bases.columns[c].skeleton.size());
+  for (std::size_t c = 0; c < count; ++c) row_coefficients[c] = reserve(bases.rows[c].skeleton.size());
+  const Index out = end;
+  work_rows_ = out + rows_;
+  const auto used = [](WorkRange range, const ClusterBasis& basis) {
+    return WorkRange{range.first, Index(basis.skeleton.size())};
+  };
+
+  up_.assign(count, -1);
+  coupling_.assign(count, -1);
+  out_.assign(count, -1);
+  double ranks = 0, ranked = 0;
+  for (std::size_t level = tree_.levels().size() - 1; level-- > 0;) {
+    schedule_.begin_stage();
+    for (std::int32_t c = tree_.levels()[level]; c < tree_.levels()[level + 1]; ++c) {
+      if (bases.columns[c].skeleton.empty()) continue;
+      std::vector<WorkRange> sources;
+      if (clusters[c].is_leaf()) {
+        sources.push_back(dofs_of(clusters[c], components));
+      } else {
+        for (const std::int32_t child : clusters[c].children) {
+          sources.push_back(used(column_coefficients[child], bases.columns[child]));
+        }
+      }
+      up_[c] = std::int32_t(schedule_.add(column_coefficients[c], std::move(sources)));
+      summary_.basis_bytes += schedule_.row(up_[c]).numbers() * sizeof(T);
+      ranks += double(bases.columns[c].skeleton.size() + bases.rows[c].skeleton.size());
+      ranked += 2;
+    }
+  }
+  for (std::size_t level = 0; level + 1 < tree_.levels().size(); ++level) {
+    schedule_.begin_stage();
+    for (std::int32_t c = tree_.levels()[level]; c < tree_.levels()[level + 1]; ++c) {
+      if (bases.rows[c].skeleton.empty()) continue;
+      std::vector<WorkRange> sources;
+      for (const std::int32_t partner : partition_.far[c]) {
+        sources.push_back(used(column_coefficients[partner], bases.columns[partner]));
+      }
+      const std::int32_t parent = clusters[c].parent;
+      if (parent >= 0 && !bases.rows[parent].skeleton.empty()) {
+        sources.push_back(used(row_coefficients[parent], bases.rows[parent]));
+      }
+      coupling_[c] = std::int32_t(schedule_.add(row_coefficients[c], std::move(sources)));
+      summary_.coupling_bytes += schedule_.row(coupling_[c]).numbers() * sizeof(T);
+    }
+  }
+  schedule_.begin_stage();
+  for (const std::int32_t leaf : tree_.leaves()) {
+    std::vector<WorkRange> sources;
+    for (const std::int32_t neighbour : partition_.near[leaf]) {
+      sources.push_back(dofs_of(clusters[neighbour], components));
+    }
+    if (!bases.rows[leaf].skeleton.empty()) sources.push_back(used(row_coefficients[leaf], bases.rows[leaf]));
+    const WorkRange rows = dofs_of(clusters[leaf], components);
+    out_[leaf] = std::int32_t(schedule_.add({out + rows.first, rows.length}, std::move(sources)));
+    summary_.near_bytes += schedule_.row(out_[leaf]).numbers() * sizeof(T);
+  }
+  summary_.mean_rank = ranked > 0 ? ranks / ranked : 0;
+  schedule_.allocate();
+}
+
+namespace {
+
+/// Numbers (row, k) = value(row, k) of a block row from column `first` on; what fills up its rows is zero.
+template <class T, class Value>
+void fill(BlockRows<T>& schedule, std::int32_t block_row, Index first, Index rows, Index columns, const Value& value) {
+  const Index height = schedule.row(block_row).out.length;
+  for (Index tile = 0; tile < height; tile += Index(kTile)) {
+    const Index last = std::min(height, tile + Index(kTile));
+    for (Index k = 0; k < columns; ++k) {
+      T* numbers = schedule.tile_column(block_row, tile, first + k);
+      for (Index r = tile; r < last; ++r) *numbers++ = r < rows ? T(value(r, k)) : T(0);
+    }
+  }
+}
+
+}  // namespace
+
+template <class T>
+void CompressedMatrix<T>::fill_bases(const NestedBases& bases) {
+  const std::int32_t count = std::int32_t(tree_.clusters().size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::int32_t c = 0; c < count; ++c) {
+    if (up_[c] >= 0) {
+      const Eigen::MatrixXd& Q = bases.columns[c].interpolation;
+      fill(schedule_, up_[c], 0, Q.cols(), Q.rows(), [&](Index r, Index k) { return Q(k, r); });
+    }
+    // the part of the parent's row coefficients that belongs to this child
+    const std::int32_t parent = tree_.clusters()[c].parent;
+    if (coupling_[c] >= 0 && parent >= 0 && coupling_[parent] >= 0) {
+      const Eigen::MatrixXd& P = bases.rows[parent].interpolation;
+      const bool second = tree_.clusters()[parent].children[1] == c;
+      const Index begin = second ? P.rows() - Index(bases.rows[c].skeleton.size()) : 0;
+      fill(schedule_, coupling_[c], schedule_.row(coupling_[c]).width - P.cols(), Index(bases.rows[c].skeleton.size()),
+           P.cols(), [&](Index r, Index k) { return P(begin + r, k); });
+    }
+    if (out_[c] >= 0 && coupling_[c] >= 0) {
+      const Eigen::MatrixXd& P = bases.rows[c].interpolation;
+      fill(schedule_, out_[c], schedule_.row(out_[c]).width - P.cols(), P.rows(), P.cols(),
+           [&](Index r, Index k) { return P(r, k); });
+    }
+  }
+}
+
+template <class T>
+void CompressedMatrix<T>::fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel) {
+  const std::vector<SkeletonPoints> rows = points_of(bases.rows), columns = points_of(bases.columns);
+  const std::int32_t count = std::int32_t(tree_.clusters().size());
+  constexpr std::size_t entries = components * components;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::int32_t c = 0; c < count; ++c) {
+    Index first = 0;
+    const Index rank = Index(bases.rows[c].skeleton.size());
+    std::vector<std::size_t> row_offset(bases.rows[c].skeleton.size());
+    for (const std::int32_t partner : partition_.far[c]) {
+      const std::size_t sources = columns[partner].points.size();
+      const double* values = kernel.values(rows[c].points, columns[partner].points);
+      for (std::size_t r = 0; r < row_offset.size(); ++r) {
+        const std::size_t point = rows[c].of_dof[r];
+        row_offset[r] =
+            (point / kPanel * sources * entries + components * bases.rows[c].skeleton[r].component) * kPanel +
+            point % kPanel;
+      }
+      const std::vector<Dof>& skeleton = bases.columns[partner].skeleton;
+      fill(schedule_, coupling_[c], first, rank, Index(skeleton.size()), [&](Index r, Index k) {
+        return values[row_offset[r] + (columns[partner].of_dof[k] * entries + skeleton[k].component) * kPanel];
+      });
+      first += Index(skeleton.size());
+    }
+  }
+}
+
+template <class T>
+Index CompressedMatrix<T>::near_column(std::int32_t leaf, std::int32_t neighbour) const {
+  Index column = 0;
+  for (const std::int32_t other : partition_.near[leaf]) {
+    if (other == neighbour) return column;
+    column += dofs_of(tree_.clusters()[other], components).length;
+  }
+  return -1;
+}
+
+template <class T>
+void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf) {
+  const Cluster& cluster = tree_.clusters()[leaf];
+  const auto vertices = [&](std::int32_t begin, std::int32_t end) {
+    return std::span(tree_.order()).subspan(begin, end - begin);
+  };
+  const auto& near = partition_.near[leaf];
+  constexpr std::size_t together = 4;  // leaves at once: their triangles overlap, their entries stay in the cache
+  Index first_column = 0;
+  for (std::size_t first = 0; first < near.size(); first += together) {
+    std::vector<std::int32_t> columns;
+    std::vector<Index> place;  // of each in the block row
+    for (std::size_t n = first; n < std::min(near.size(), first + together); ++n) {
+      const Cluster& neighbour = tree_.clusters()[near[n]];
+      for (std::int32_t k = neighbour.begin; k < neighbour.end; ++k) {
+        columns.push_back(tree_.order()[k]);
+        place.push_back(first_column + dof_row(k - neighbour.begin, 0, components));
+      }
+      const WorkRange dofs = dofs_of(neighbour, components);
+      const bool full = neighbour.size() % std::int32_t(kPanel) == 0;
+      for (Index k = full ? dofs.length : dofs.length - components * Index(kPanel); k < dofs.length; ++k) {
+        for (Index r = 0; r < dofs_of(cluster, components).length; r += Index(kTile)) {
+          std::fill_n(schedule_.tile_column(out_[leaf], r, first_column + k), kTile, T(0));
+        }
+      }
+      first_column += dofs.length;
+    }
+    collocation.for_double_layer_panels(
+        vertices(cluster.begin, cluster.end), columns, [&](std::size_t row, std::size_t, const double* entries) {
+          for (std::size_t c = 0; c < columns.size(); ++c) {
+            for (int j = 0; j < components; ++j) {
+              T* to = schedule_.tile_column(out_[leaf], Index(row) * components, place[c] + j * Index(kPanel));
+              for (int i = 0; i < components; ++i) {
+                const double* from = entries + (c * components * components + components * i + j) * kPanel;
+                for (std::size_t p = 0; p < kPanel; ++p) to[i * kPanel + p] = T(from[p]);
+              }
+            }
+          }
+        });
+  }
+}
+
+template <class T>
+void CompressedMatrix<T>::fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress) {
+  static_assert(kTile == components * kPanel);
+  const std::int32_t count = std::int32_t(tree_.leaves().size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::int32_t k = 0; k < count; ++k) fill_near_leaf(collocation, tree_.leaves()[k]);
+  report(progress, "compress", 1);
+}
+
+/// Rigid translation: minus the sum of a row's other blocks.
+template <class T>
+void CompressedMatrix<T>::set_diagonal() {
+  Eigen::MatrixXd ones(components * Index(tree_.order().size()), components);
+  for (Index k = 0; k < ones.rows(); ++k) ones.row(k) = Eigen::RowVector3d::Unit(k % components);
+  VectorBlock sums;
+  Block work;
+  multiply(to_tree(ones), sums, work);
+  for (const std::int32_t leaf : tree_.leaves()) {
+    const Cluster& cluster = tree_.clusters()[leaf];
+    const Index own = near_column(leaf, leaf);
+    for (std::int32_t place = cluster.begin; place < cluster.end; ++place) {
+      for (int i = 0; i < components; ++i) {
+        for (int j = 0; j < components; ++j) {
+          const Index row = dof_row(place - cluster.begin, i, components);
+          T* column = schedule_.tile_column(out_[leaf], row, own + dof_row(place - cluster.begin, j, components));
+          column[row % Index(kTile)] = T(-sums(dof_row(place, i, components), j));
+        }
+      }
+    }
+  }
+}
+
+template <class T>
+VectorBlock CompressedMatrix<T>::to_tree(const Eigen::MatrixXd& vectors) const {
+  VectorBlock result = VectorBlock::Zero(rows_, vectors.cols());
+  for (std::int32_t place = 0; place < std::int32_t(tree_.order().size()); ++place) {
+    for (int i = 0; i < components; ++i) {
+      result.row(dof_row(place, i, components)) = vectors.row(Index(tree_.order()[place]) * components + i);
+    }
+  }
+  return result;
+}
+
+template <class T>
+Eigen::MatrixXd CompressedMatrix<T>::from_tree(const VectorBlock& vectors) const {
+  Eigen::MatrixXd result(Index(tree_.order().size()) * components, vectors.cols());
+  for (std::int32_t place = 0; place < std::int32_t(tree_.order().size()); ++place) {
+    for (int i = 0; i < components; ++i) {
+      result.row(Index(tree_.order()[place]) * components + i) = vectors.row(dof_row(place, i, components));
+    }
+  }
+  return result;
+}
+
+template <class T>
+void CompressedMatrix<T>::multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const {
+  if (work.rows() != work_rows_ || work.cols() != X.cols()) work.resize(work_rows_, X.cols());
+  work.topRows(rows_) = X.template cast<T>();
+  schedule_.run(work);
+  Y = work.bottomRows(rows_).template cast<double>();
+}
+
+template <class T>
+Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t>& places) const {
+  const Index n = Index(places.size());
+  Eigen::MatrixXf entries = Eigen::MatrixXf::Zero(components * n, components * n);
+  for (Index c = 0; c < n; ++c) {
+    const std::int32_t column_leaf = leaf_of_place_[places[c]];
+    std::int32_t row_leaf = -1;
+    Index first = -1;
+    for (Index r = 0; r < n; ++r) {
+      if (leaf_of_place_[places[r]] != row_leaf) {
+        row_leaf = leaf_of_place_[places[r]];
+        first = near_column(row_leaf, column_leaf);
+      }
+      if (first < 0) continue;
+      const std::int32_t row_place = places[r] - tree_.clusters()[row_leaf].begin;
+      const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
+      for (int j = 0; j < components; ++j) {
+        const T* column = schedule_.tile_column(out_[row_leaf], dof_row(row_place, 0, components),
+                                                first + dof_row(column_place, j, components));
+        for (int i = 0; i < components; ++i) {
+          entries(components * r + i, components * c + j) =
+              float(column[i * Index(kPanel) + row_place % Index(kPanel)]);
+        }
+      }
+    }
+  }
+  return entries;
+}
+
+std::size_t predict_compressed_bytes(const TriangleMesh& mesh, const CompressionOptions& options,
+                                     std::size_t number_bytes) {
+  const ClusterTree tree(mesh);
+  const BlockPartition partition(tree, options.eta);
+  const std::vector<bool> has_far_field = partition.has_far_field(tree);
+  constexpr double components = 3;
+  // mean ranks of the leg at 1e-3, 1e-4, 1e-5: 45, 74, 88
+  const double rank = std::clamp(12 - 15 * std::log10(options.tolerance), 16.0, components * ClusterTree::leaf_size);
+  double numbers = 0;
+  for (std::size_t c = 0; c < tree.clusters().size(); ++c) {
+    const double dofs = components * tree.clusters()[c].size();
+    for (const std::int32_t other : partition.near[c]) numbers += dofs * components * tree.clusters()[other].size();
+    numbers += double(partition.far[c].size()) * rank * rank;
+    if (has_far_field[c]) numbers += 2 * rank * (tree.clusters()[c].is_leaf() ? dofs : 2 * rank);
+  }
+  return static_cast<std::size_t>(numbers * double(number_bytes));
+}
+
+template class CompressedMatrix<float>;
+template class CompressedMatrix<double>;
+
+}  // namespace skinbem

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The double layer's matrix H, compressed: an H2-matrix.
+#pragma once
+
+#include <memory>
+
+#include <skinbem/base/progress.hpp>
+#include <skinbem/hmatrix/block_rows.hpp>
+#include <skinbem/hmatrix/nested_basis.hpp>
+
+namespace skinbem {
+
+/// How far H is compressed.
+struct CompressionOptions {
+  /// Of the nested bases, relative to each cluster's far field; not a bound of the matrix's error, which is measured.
+  double tolerance = 1e-3;
+  /// Blocks of clusters whose larger diameter is less than eta times their distance are compressed; none for 0, when
+  /// the matrix is exact and dense.
+  double eta = 1.5;
+  /// Vertices of a cluster's far field that its bases are made from.
+  Index samples = 192;
+};
+
+/// What it took. Sizes in bytes.
+struct CompressionSummary {
+  std::size_t near_bytes = 0;      ///< blocks of neighbouring leaves, dense
+  std::size_t coupling_bytes = 0;  ///< between skeletons
+  std::size_t basis_bytes = 0;
+  double mean_rank = 0;  ///< of all bases
+  double basis_seconds = 0;
+  double near_seconds = 0;
+  double coupling_seconds = 0;
+};
+
+/// H (3N by 3N) with T = float or double numbers, as near blocks of neighbouring leaves, and for the far field nested
+/// bases (interpolative decomposition: Martinsson, Rokhlin, Tygert 2005; nested: Boerm 2010) with couplings that are
+/// values of the kernel between two skeletons: H ~ near + P S Q^T. Diagonal blocks make H 1 = 0. Vectors are in the
+/// tree's order: by panel of kPanel vertices, component, vertex, filled up to a whole panel.
+template <class T>
+class CompressedMatrix {
+ public:
+  using Block = typename BlockRows<T>::Block;
+
+  CompressedMatrix(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
+                   const CompressionOptions& options, const Progress& progress = {});
+
+  /// 3N, filled up to whole panels.
+  Index rows() const { return rows_; }
+  /// From rows in the order of the mesh to the tree's order, and back. What fills up is zero.
+  VectorBlock to_tree(const Eigen::MatrixXd& vectors) const;
+  Eigen::MatrixXd from_tree(const VectorBlock& vectors) const;
+
+  /// Y = H X in the tree's order, at most BlockRows<T>::most_columns columns. `work` is scratch space that is kept.
+  void multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const;
+
+  /// The entries of H between these places of one leaf's neighbourhood: 3 #places squared, degrees of freedom in the
+  /// order of the places. Zero for pairs of leaves that are not neighbours.
+  Eigen::MatrixXf near_entries(const std::vector<std::int32_t>& places) const;
+
+  const ClusterTree& tree() const { return tree_; }
+  const BlockPartition& partition() const { return partition_; }
+  const CompressionSummary& summary() const { return summary_; }
+  std::size_t bytes() const { return schedule_.bytes(); }
+
+ private:
+  static constexpr int components = 3;
+
+  void plan(const NestedBases& bases);
+  void fill_bases(const NestedBases& bases);
+  void fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
+  void fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress);
+  void fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf);
+  void set_diagonal();
+  /// Where the leaf's own columns begin in its near block row.
+  Index near_column(std::int32_t leaf, std::int32_t neighbour) const;
+
+  ClusterTree tree_;
+  BlockPartition partition_;
+  Index rows_ = 0;
+  BlockRows<T> schedule_;
+  std::vector<std::int32_t> leaf_of_place_;
+  std::vector<std::int32_t> up_, coupling_, out_;  ///< block row by cluster, -1 where there is none
+  Index work_rows_ = 0;
+  CompressionSummary summary_;
+};
+
+/// Bytes that a CompressedMatrix of numbers of `number_bytes` each will take: near blocks are counted, the rest follows
+/// from measured ranks.
+std::size_t predict_compressed_bytes(const TriangleMesh& mesh, const CompressionOptions& options,
+                                     std::size_t number_bytes);
+
+extern template class CompressedMatrix<float>;
+extern template class CompressedMatrix<double>;
+
+}  // namespace skinbem

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What a cluster sees of its far field: the kernel between single vertices, and which of them to look at.
+#pragma once
+
+#include <vector>
+
+#include <skinbem/base/aligned_buffer.hpp>
+#include <skinbem/hmatrix/cluster_tree.hpp>
+#include <skinbem/operator/collocation.hpp>
+
+namespace skinbem {
+
+/// The double layer's kernel T(x; y, n) from the centroids y of triangles, n their normals, to vertices x: such dipoles
+/// stand for what hat functions do from afar. Vertices are named by their place in a tree.
+template <class Kernel>
+class PointKernel {
+ public:
+  static constexpr int components = Kernel::components;
+
+  PointKernel(const TriangleMesh& mesh, const ClusterTree& tree, const Kernel& kernel);
+
+  /// Values at `points` (places) of dipoles at `sources` (triangles): entry (i, j) of point p and source q is
+  /// result[((p / kPanel #sources + q) components^2 + components i + j) kPanel + p % kPanel]. Valid until the next call
+  /// of this thread.
+  const double* values(std::span<const std::int32_t> points, std::span<const std::int32_t> sources) const;
+
+ private:
+  std::vector<Eigen::Vector3d> vertices_;  ///< times a power of two that brings them near unit size
+  std::vector<Eigen::Vector3d> centroids_;
+  std::vector<Eigen::Vector3d> normals_;
+  Kernel kernel_;
+};
+
+/// Some vertices of a cluster's far field, each standing for `area_root`^2 of its surface.
+struct FarSamples {
+  std::vector<std::int32_t> places;     ///< a multiple of kPanel; those that fill up have no weight
+  std::vector<std::int32_t> triangles;  ///< one at each
+  std::vector<double> area_root;
+};
+
+/// For every cluster that has a far field, samples of it: some of every partner of its own, and some of its parent's.
+std::vector<FarSamples> sample_far_fields(const TriangleMesh& mesh, const ClusterTree& tree,
+                                          const BlockPartition& partition, Index samples_per_cluster);
+
+extern template class PointKernel<Kelvin<double>>;
+
+}  // namespace skinbem

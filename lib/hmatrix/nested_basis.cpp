@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/hmatrix/nested_basis.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+#include <skinbem/base/lapack.hpp>
+#include <skinbem/hmatrix/tile_product.hpp>
+#include <skinbem/mesh/adjacency.hpp>
+
+namespace skinbem {
+namespace {
+
+using MatrixMap = Eigen::Map<Eigen::MatrixXd>;
+
+/// A matrix in memory that a thread keeps: fresh pages for every cluster would cost more than the work. One for each
+/// `use`; not initialised.
+enum class Use { field, hats, gram, factor };
+MatrixMap scratch(Use use, Index rows, Index columns) {
+  thread_local std::vector<double> storage[4];
+  std::vector<double>& numbers = storage[static_cast<int>(use)];
+  if (numbers.size() < static_cast<std::size_t>(rows * columns))
+    numbers.resize(static_cast<std::size_t>(rows * columns));
+  return {numbers.data(), rows, columns};
+}
+
+/// The points of some degrees of freedom, each once, and where in that list each one's point is.
+struct PointList {
+  std::vector<std::int32_t> points;
+  std::vector<std::size_t> of_dof;
+
+  explicit PointList(const std::vector<Dof>& dofs) {
+    for (const Dof& dof : dofs) points.push_back(dof.point);
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    for (const Dof& dof : dofs) {
+      of_dof.push_back(std::lower_bound(points.begin(), points.end(), dof.point) - points.begin());
+    }
+  }
+};
+
+/// Builds one cluster's bases. A matrix's rows are the equations of the samples, weighted.
+template <class Kernel>
+class BasisMaker {
+ public:
+  static constexpr int components = Kernel::components;
+
+  BasisMaker(const ClusterTree& tree, const IndexLists& triangles, const Collocation<Kernel>& collocation,
+             const PointKernel<Kernel>& kernel, const FarSamples& samples, double tolerance)
+      : tree_(tree),
+        triangles_(triangles),
+        collocation_(collocation),
+        kernel_(kernel),
+        samples_(samples),
+        tolerance_(tolerance),
+        equations_(Index(samples.places.size()) * components) {}
+
+  ClusterBasis row_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
+    const std::vector<Dof> candidates = cluster.is_leaf() ? vertex_dofs(cluster) : skeletons(cluster, bases);
+    const MatrixMap A = field_at(candidates);
+    MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
+    lapack::gram_matrix(A, gram);
+    ColumnSelection selection = select_columns(gram, tolerance_);
+    if (cluster.is_leaf()) selection.weights = fill_up(cluster, selection.weights);
+    return basis(candidates, std::move(selection));
+  }
+
+  ClusterBasis column_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
+    const std::vector<Dof> candidates = cluster.is_leaf() ? dipole_dofs(cluster) : skeletons(cluster, bases);
+    const MatrixMap A = field_of(candidates);
+    const Index hats = cluster.is_leaf() ? cluster.size() * components : 0;
+    MatrixMap gram = scratch(Use::gram, A.cols() + hats, A.cols());
+    lapack::gram_matrix(A, gram.topRows(A.cols()));
+    if (hats > 0) lapack::transposed_product(field_of_hats(cluster), A, gram.bottomRows(hats));
+    ColumnSelection selection = select_columns(gram, tolerance_);
+    if (hats > 0) selection.weights = fill_up(cluster, selection.weights.bottomRows(hats));
+    return basis(candidates, std::move(selection));
+  }
+
+ private:
+  static std::vector<Dof> all_components(const std::vector<std::int32_t>& points) {
+    std::vector<Dof> dofs;
+    for (const std::int32_t point : points) {
+      for (std::int32_t component = 0; component < components; ++component) dofs.push_back({point, component});
+    }
+    return dofs;
+  }
+  static std::vector<std::int32_t> places_of(const Cluster& leaf) {
+    std::vector<std::int32_t> places(leaf.size());
+    std::iota(places.begin(), places.end(), leaf.begin);
+    return places;
+  }
+  static std::vector<Dof> vertex_dofs(const Cluster& leaf) { return all_components(places_of(leaf)); }
+  std::vector<Dof> dipole_dofs(const Cluster& leaf) const {
+    std::vector<std::int32_t> found;
+    for (const std::int32_t place : places_of(leaf)) {
+      const auto around = triangles_[tree_.order()[place]];
+      found.insert(found.end(), around.begin(), around.end());
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return all_components(found);
+  }
+  static std::vector<Dof> skeletons(const Cluster& cluster, const std::vector<ClusterBasis>& bases) {
+    std::vector<Dof> dofs;
+    for (const std::int32_t child : cluster.children) {
+      dofs.insert(dofs.end(), bases[child].skeleton.begin(), bases[child].skeleton.end());
+    }
+    return dofs;
+  }
+  static ClusterBasis basis(const std::vector<Dof>& candidates, ColumnSelection selection) {
+    ClusterBasis result;
+    for (const std::int32_t k : selection.columns) result.skeleton.push_back(candidates[k]);
+    result.interpolation = std::move(selection.weights);
+    return result;
+  }
+  /// From vertex by vertex to the order of a leaf's tiles.
+  static Eigen::MatrixXd fill_up(const Cluster& leaf, const Eigen::MatrixXd& weights) {
+    const Index panels = (leaf.size() + Index(kPanel) - 1) / Index(kPanel);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(panels * Index(kPanel) * components, weights.cols());
+    for (Index v = 0; v < leaf.size(); ++v) {
+      for (int i = 0; i < components; ++i) {
+        result.row((v / Index(kPanel) * components + i) * Index(kPanel) + v % Index(kPanel)) =
+            weights.row(components * v + i);
+      }
+    }
+    return result;
+  }
+
+  /// Column k: the field at degree of freedom k of dipoles at the samples.
+  MatrixMap field_at(const std::vector<Dof>& dofs) const {
+    const PointList list(dofs);
+    const std::size_t sources = samples_.triangles.size();
+    const double* values = kernel_.values(list.points, samples_.triangles);
+    MatrixMap A = scratch(Use::field, equations_, Index(dofs.size()));
+    for (std::size_t k = 0; k < dofs.size(); ++k) {
+      const std::size_t point = list.of_dof[k];
+      const double* from =
+          values + (point / kPanel * sources * entries + components * dofs[k].component) * kPanel + point % kPanel;
+      for (std::size_t q = 0; q < sources; ++q) {
+        for (int j = 0; j < components; ++j) {
+          A(components * Index(q) + j, Index(k)) = samples_.area_root[q] * from[(q * entries + j) * kPanel];
+        }
+      }
+    }
+    return A;
+  }
+
+  /// Column k: the field at the samples of dipole k.
+  MatrixMap field_of(const std::vector<Dof>& dofs) const {
+    const PointList list(dofs);
+    const double* values = kernel_.values(samples_.places, list.points);
+    MatrixMap A = scratch(Use::field, equations_, Index(dofs.size()));
+    for (std::size_t k = 0; k < dofs.size(); ++k) {
+      for (std::size_t first = 0; first < samples_.places.size(); first += kPanel) {
+        const std::size_t block = first / kPanel * list.points.size() + list.of_dof[k];
+        copy_panel(values + (block * entries + dofs[k].component) * kPanel, first, A.col(Index(k)));
+      }
+    }
+    return A;
+  }
+
+  /// Column k: the field at the samples of the leaf's hat function k.
+  MatrixMap field_of_hats(const Cluster& leaf) const {
+    std::vector<std::int32_t> rows;
+    for (const std::int32_t place : samples_.places) rows.push_back(tree_.order()[place]);
+    const auto columns = std::span(tree_.order()).subspan(leaf.begin, leaf.size());
+    MatrixMap A = scratch(Use::hats, equations_, leaf.size() * components);
+    collocation_.for_double_layer_panels(rows, columns, [&](std::size_t first, std::size_t, const double* values) {
+      for (Index k = 0; k < A.cols(); ++k) {
+        copy_panel(values + (k / components * Index(entries) + k % components) * Index(kPanel), first, A.col(k));
+      }
+    });
+    return A;
+  }
+
+  /// The equations of a panel of samples; `from` is entry (0, j).
+  void copy_panel(const double* from, std::size_t first, Eigen::Ref<Eigen::VectorXd> column) const {
+    for (int i = 0; i < components; ++i) {
+      for (std::size_t p = 0; p < kPanel; ++p) {
+        column[Index(first) * components + i * Index(kPanel) + Index(p)] =
+            samples_.area_root[first + p] * from[i * components * kPanel + p];
+      }
+    }
+  }
+
+  static constexpr std::size_t entries = components * components;
+  const ClusterTree& tree_;
+  const IndexLists& triangles_;
+  const Collocation<Kernel>& collocation_;
+  const PointKernel<Kernel>& kernel_;
+  const FarSamples& samples_;
+  double tolerance_;
+  Index equations_;
+};
+
+}  // namespace
+
+ColumnSelection select_columns(const Eigen::Ref<const Eigen::MatrixXd>& gram, double tolerance) {
+  const Index rows = gram.rows(), n = gram.cols();
+  Eigen::VectorXd left = gram.topRows(n).diagonal();  // squared norms of what is not yet represented
+  const double total = left.sum(), largest = n > 0 ? left.maxCoeff() : 0;
+  MatrixMap L = scratch(Use::factor, rows, n);
+  ColumnSelection result;
+  constexpr double rounding = 1e-13;
+  for (Index r = 0; r < n; ++r) {
+    const bool done = left.cwiseMax(0.0).sum() <= tolerance * tolerance * total;
+    Index pivot = 0;
+    if (left.maxCoeff(&pivot) <= rounding * largest || (done && r % Index(kTileStep) == 0)) break;
+    // column `pivot` of the Gram matrix, of which only the lower half is there
+    auto column = L.col(r);
+    column.head(pivot) = gram.row(pivot).head(pivot).transpose();
+    column.tail(rows - pivot) = gram.col(pivot).tail(rows - pivot);
+    lapack::subtract_product(L.data(), int(rows), int(r), int(rows), L.data() + pivot, int(rows), column.data());
+    column /= std::sqrt(column[pivot]);
+    left -= column.head(n).cwiseAbs2();
+    left[pivot] = 0;
+    result.columns.push_back(static_cast<std::int32_t>(pivot));
+  }
+  const Index rank = Index(result.columns.size());
+  Eigen::MatrixXd skeleton(rank, rank);
+  for (Index k = 0; k < rank; ++k) skeleton.row(k) = L.row(result.columns[k]).head(rank);
+  result.weights = lapack::right_solve_lower(skeleton, L.leftCols(rank));
+  return result;
+}
+
+template <class Kernel>
+NestedBases make_nested_bases(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition,
+                              const Collocation<Kernel>& collocation, const PointKernel<Kernel>& kernel,
+                              const BasisOptions& options) {
+  const std::vector<FarSamples> samples = sample_far_fields(mesh, tree, partition, options.samples);
+  const IndexLists triangles = triangles_around_vertices(mesh);
+  const std::size_t count = tree.clusters().size();
+  NestedBases bases{std::vector<ClusterBasis>(count), std::vector<ClusterBasis>(count)};
+  for (std::size_t level = tree.levels().size() - 1; level-- > 0;) {
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::int32_t c = tree.levels()[level]; c < tree.levels()[level + 1]; ++c) {
+      if (samples[c].places.empty()) continue;
+      const BasisMaker<Kernel> maker(tree, triangles, collocation, kernel, samples[c], options.tolerance);
+      bases.rows[c] = maker.row_basis(tree.clusters()[c], bases.rows);
+      bases.columns[c] = maker.column_basis(tree.clusters()[c], bases.columns);
+    }
+  }
+  return bases;
+}
+
+template NestedBases make_nested_bases(const TriangleMesh&, const ClusterTree&, const BlockPartition&,
+                                       const Collocation<Kelvin<double>>&, const PointKernel<Kelvin<double>>&,
+                                       const BasisOptions&);
+
+}  // namespace skinbem

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/hmatrix/tile_product.hpp>
+
+#include <algorithm>
+#include <utility>
+
+// Vectors of a length unknown at compile time cannot be array elements; such machines use their fixed-length set.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_RVV | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "skinbem/hmatrix/tile_product.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target.h comes first
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace skinbem {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// So many columns of a tile are used for all right-hand sides before the next are read: they stay in the first-level
+/// cache.
+constexpr std::size_t kDepth = 96;
+constexpr std::size_t kMostColumns = 64;
+/// Columns of the result that are summed at once, beside three vectors of rows: as registers allow.
+constexpr std::size_t kColumns = HWY_TARGET <= HWY_AVX3 ? 6 : 4;
+
+/// sums (column by column, kTile apart) += strip of kVectors vectors of the tile times kRhs columns. A slice is summed
+/// by itself before it is added: in single precision the error of a long row is that of a short one.
+/// Loops over sums are expanded from index sequences: compilers keep an array in registers only where every index is a
+/// constant from the outset.
+template <std::size_t kRhs, class T, std::size_t... kSum>
+HWY_INLINE void multiply_strip(const T* HWY_RESTRICT strip, std::size_t height, std::size_t depth,
+                               const T* HWY_RESTRICT rhs, std::size_t columns, T* HWY_RESTRICT sums,
+                               std::index_sequence<kSum...>) {
+  using D = hn::CappedTag<T, kTileStep>;
+  using V = hn::Vec<D>;
+  constexpr std::size_t lanes = hn::MaxLanes(D());
+  constexpr std::size_t vectors = sizeof...(kSum) / kRhs;
+  const D d;
+  V sum[] = {((void)kSum, hn::Zero(d))...};
+  for (std::size_t k = 0; k < depth; ++k, strip += height, rhs += columns) {
+    ((sum[kSum] = hn::MulAdd(hn::Load(d, strip + kSum % vectors * lanes), hn::Set(d, rhs[kSum / vectors]), sum[kSum])),
+     ...);
+  }
+  const auto add = [&](V value, T* to) HWY_ATTR { hn::Store(hn::Add(hn::Load(d, to), value), d, to); };
+  (add(sum[kSum], sums + kSum / vectors * kTile + kSum % vectors * lanes), ...);
+}
+
+template <std::size_t kVectors, class T>
+HWY_INLINE void multiply_strip_columns(const T* strip, std::size_t height, std::size_t depth, const T* rhs,
+                                       std::size_t columns, T* sums) {
+  const auto some = [&](auto count, std::size_t first) HWY_ATTR {
+    multiply_strip<count>(strip, height, depth, rhs + first, columns, sums + first * kTile,
+                          std::make_index_sequence<kVectors * count>());
+  };
+  std::size_t first = 0;
+  for (; first + kColumns <= columns; first += kColumns) some(std::integral_constant<std::size_t, kColumns>(), first);
+  for (; first + 3 <= columns; first += 3) some(std::integral_constant<std::size_t, 3>(), first);
+  for (; first < columns; ++first) some(std::integral_constant<std::size_t, 1>(), first);
+}
+
+/// kDepth or fewer columns of the tile times all right-hand sides.
+template <class T>
+HWY_INLINE void multiply_slice(const T* slice, std::size_t height, std::size_t depth, const T* rhs, std::size_t columns,
+                               T* sums) {
+  constexpr std::size_t lanes = hn::MaxLanes(hn::CappedTag<T, kTileStep>());
+  std::size_t row = 0;
+  for (; row + 3 * lanes <= height; row += 3 * lanes)
+    multiply_strip_columns<3>(slice + row, height, depth, rhs, columns, sums + row);
+  for (; row + 2 * lanes <= height; row += 2 * lanes)
+    multiply_strip_columns<2>(slice + row, height, depth, rhs, columns, sums + row);
+  for (; row + lanes <= height; row += lanes)
+    multiply_strip_columns<1>(slice + row, height, depth, rhs, columns, sums + row);
+}
+
+template <class T>
+HWY_INLINE void multiply(const T* tile, std::size_t height, std::span<const RowRange<T>> ranges, std::size_t columns,
+                         T* out) {
+  HWY_ALIGN T sums[kTile * kMostColumns];
+  std::fill_n(sums, kTile * columns, T(0));
+  for (const RowRange<T>& range : ranges) {
+    for (std::size_t done = 0; done < range.length; done += kDepth) {
+      const std::size_t depth = std::min(kDepth, range.length - done);
+      multiply_slice(tile, height, depth, range.first + done * columns, columns, sums);
+      tile += depth * height;
+    }
+  }
+  for (std::size_t r = 0; r < height; ++r) {
+    for (std::size_t c = 0; c < columns; ++c) out[r * columns + c] = sums[c * kTile + r];
+  }
+}
+
+void multiply_f32(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
+                  float* out) {
+  multiply(tile, height, ranges, columns, out);
+}
+
+void multiply_f64(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges, std::size_t columns,
+                  double* out) {
+  multiply(tile, height, ranges, columns, out);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace skinbem
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace skinbem {
+
+HWY_EXPORT(multiply_f32);
+HWY_EXPORT(multiply_f64);
+
+void multiply_tile(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
+                   float* out) {
+  HWY_DYNAMIC_DISPATCH(multiply_f32)(tile, height, ranges, columns, out);
+}
+
+void multiply_tile(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges,
+                   std::size_t columns, double* out) {
+  HWY_DYNAMIC_DISPATCH(multiply_f64)(tile, height, ranges, columns, out);
+}
+
+}  // namespace skinbem
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The one product that everything compressed is made of: a wide, packed matrix times a few columns.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace skinbem {
+
+/// Rows of a packed matrix are stored in tiles of this many, a multiple of every vector length; the last tile of a
+/// matrix may have fewer, a multiple of kTileStep. Within a tile numbers are ordered column by column.
+inline constexpr std::size_t kTile = 48;
+inline constexpr std::size_t kTileStep = 16;
+
+/// #length consecutive rows of a row-major matrix of right-hand sides.
+template <class T>
+struct RowRange {
+  const T* first;
+  std::size_t length;
+};
+
+/// One tile times stacked right-hand sides: `tile` is height by (sum of the ranges' lengths), the result (height by
+/// #columns, row-major, adjacent) is written to `out`. Sums run in the order of storage, so the result does not depend
+/// on who calls.
+void multiply_tile(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
+                   float* out);
+void multiply_tile(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges,
+                   std::size_t columns, double* out);
+
+}  // namespace skinbem

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <skinbem/solve/schwarz.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include <skinbem/base/lapack.hpp>
+#include <skinbem/mesh/adjacency.hpp>
+#include <skinbem/mesh/vertex_normals.hpp>
+
+namespace skinbem {
+namespace {
+
+constexpr int components = 3;
+constexpr double overlap_in_edges = 2;
+constexpr std::size_t most_places = 256;  ///< of a leaf and its surroundings
+
+/// Finds what is around a leaf.
+class Surroundings {
+ public:
+  Surroundings(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition)
+      : tree_(tree), partition_(partition), edge_(mesh_edges(mesh)) {
+    const Points normals = vertex_normals(mesh);
+    for (const std::int32_t v : tree.order()) {
+      vertices_.push_back(mesh.vertices.row(v).transpose());
+      normals_.push_back(normals.row(v).transpose());
+    }
+  }
+
+  /// Places of the leaf, then those around it, nearest first.
+  std::vector<std::int32_t> operator()(std::int32_t leaf) const {
+    const Cluster& cluster = tree_.clusters()[leaf];
+    struct Candidate {
+      double distance;
+      std::int32_t place;
+      auto operator<=>(const Candidate&) const = default;
+    };
+    std::vector<Candidate> candidates;
+    double thickness = std::numeric_limits<double>::infinity();
+    for (const std::int32_t neighbour : partition_.near[leaf]) {
+      if (neighbour == leaf) continue;
+      const Cluster& other = tree_.clusters()[neighbour];
+      for (std::int32_t k = other.begin; k < other.end; ++k) {
+        double nearest2 = std::numeric_limits<double>::infinity();
+        for (std::int32_t own = cluster.begin; own < cluster.end; ++own) {
+          const Eigen::Vector3d d = vertices_[k] - vertices_[own];
+          const double distance2 = d.squaredNorm();
+          nearest2 = std::min(nearest2, distance2);
+          const bool opposite = normals_[k].dot(normals_[own]) < -0.5 && d.dot(normals_[own]) < 0;
+          if (opposite) thickness = std::min(thickness, std::sqrt(distance2));
+        }
+        candidates.push_back({std::sqrt(nearest2), k});
+      }
+    }
+    const bool thin = thickness < cluster.points.diagonal().norm();
+    const double edge = mean_edge(cluster);
+    const double reach = std::max(overlap_in_edges * edge, thin ? thickness + edge : 0.0);
+    std::sort(candidates.begin(), candidates.end());
+    std::vector<std::int32_t> places(cluster.size());
+    std::iota(places.begin(), places.end(), cluster.begin);
+    for (const Candidate& candidate : candidates) {
+      if (candidate.distance > reach || places.size() >= most_places) break;
+      places.push_back(candidate.place);
+    }
+    std::sort(places.begin() + cluster.size(), places.end());
+    return places;
+  }
+
+ private:
+  /// Mean length of the edges at each vertex.
+  static std::vector<double> mesh_edges(const TriangleMesh& mesh) {
+    const IndexLists neighbours = neighbours_of_vertices(mesh);
+    std::vector<double> lengths(mesh.vertex_count());
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      for (const std::int32_t w : neighbours[v]) {
+        lengths[v] += (mesh.vertices.row(v) - mesh.vertices.row(w)).norm() / double(neighbours[v].size());
+      }
+    }
+    return lengths;
+  }
+  double mean_edge(const Cluster& cluster) const {
+    double sum = 0;
+    for (std::int32_t k = cluster.begin; k < cluster.end; ++k) sum += edge_[tree_.order()[k]];
+    return sum / cluster.size();
+  }
+
+  const ClusterTree& tree_;
+  const BlockPartition& partition_;
+  std::vector<double> edge_;
+  std::vector<Eigen::Vector3d> vertices_, normals_;
+};
+
+/// Row of the tree's order.
+Index dof_row(std::int32_t place, int component) {
+  return (place / Index(kPanel) * components + component) * Index(kPanel) + place % Index(kPanel);
+}
+
+}  // namespace
+
+template <class T>
+SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh& mesh, const CompressedMatrix<T>& H) {
+  const ClusterTree& tree = H.tree();
+  const Surroundings surroundings(mesh, tree, H.partition());
+  leaves_.resize(tree.leaves().size());
+  std::atomic<bool> singular = false;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = 0; k < leaves_.size(); ++k) {
+    const std::vector<std::int32_t> places = surroundings(tree.leaves()[k]);
+    const Cluster& cluster = tree.clusters()[tree.leaves()[k]];
+    if (!invert(H.near_entries(places), cluster, places, leaves_[k])) singular = true;
+  }
+  if (singular) {
+    throw Error(ErrorCode::numerical, "the equations around some vertices are singular; check the mesh there");
+  }
+}
+
+bool SchwarzPreconditioner::invert(Eigen::MatrixXf entries, const Cluster& cluster,
+                                   const std::vector<std::int32_t>& places, Leaf& leaf) {
+  const int n = static_cast<int>(entries.rows()), own = cluster.size() * components;
+  Eigen::MatrixXf rows = Eigen::MatrixXf::Identity(n, own);  // of the inverse, transposed
+  if (!lapack::solve_transposed(entries, rows)) return false;
+  const Index panels = (cluster.size() + Index(kPanel) - 1) / Index(kPanel);
+  leaf.first = dof_row(cluster.begin, 0);
+  leaf.tiles = static_cast<std::size_t>(panels);
+  for (const std::int32_t place : places) {
+    for (int i = 0; i < components; ++i) leaf.sources.push_back(dof_row(place, i));
+  }
+  leaf.inverse.assign(leaf.tiles * kTile * leaf.sources.size(), 0.0f);
+  for (Index k = 0; k < n; ++k) {
+    for (Index place = 0; place < cluster.size(); ++place) {
+      for (int i = 0; i < components; ++i) {
+        const Index row = dof_row(std::int32_t(place), i);
+        leaf.inverse[(row / Index(kTile) * n + k) * Index(kTile) + row % Index(kTile)] =
+            rows(k, components * place + i);
+      }
+    }
+  }
+  return true;
+}
+
+void SchwarzPreconditioner::apply(const VectorBlock& in, VectorBlock& out) const {
+  out.resize(in.rows(), in.cols());
+  const std::size_t columns = static_cast<std::size_t>(in.cols());
+#pragma omp parallel
+  {
+    BlockRows<float>::Block gathered, result(Index(kTile), in.cols());
+#pragma omp for schedule(dynamic, 4)
+    for (std::size_t k = 0; k < leaves_.size(); ++k) {
+      const Leaf& leaf = leaves_[k];
+      gathered.resize(Index(leaf.sources.size()), in.cols());
+      for (std::size_t s = 0; s < leaf.sources.size(); ++s) {
+        gathered.row(Index(s)) = in.row(leaf.sources[s]).cast<float>();
+      }
+      const RowRange<float> range{gathered.data(), leaf.sources.size()};
+      for (std::size_t tile = 0; tile < leaf.tiles; ++tile) {
+        multiply_tile(leaf.inverse.data() + tile * kTile * leaf.sources.size(), kTile, std::span(&range, 1), columns,
+                      result.data());
+        out.middleRows(leaf.first + Index(tile * kTile), Index(kTile)) = result.cast<double>();
+      }
+    }
+  }
+}
+
+std::size_t SchwarzPreconditioner::bytes() const {
+  std::size_t sum = 0;
+  for (const Leaf& leaf : leaves_) sum += leaf.inverse.size() * sizeof(float) + leaf.sources.size() * sizeof(Index);
+  return sum;
+}
+
+template SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh&, const CompressedMatrix<float>&);
+template SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh&, const CompressedMatrix<double>&);
+
+}  // namespace skinbem

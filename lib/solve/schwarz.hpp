@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Restricted additive Schwarz preconditioner on the leaves of the cluster tree.
+#pragma once
+
+#include <skinbem/hmatrix/compressed_matrix.hpp>
+
+namespace skinbem {
+
+/// For each leaf the matrix of its vertices and of those around it is inverted and the leaf's rows of the inverse are
+/// kept (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). Around means within two mean edge lengths and, where the body
+/// is thin, as far as the opposite side.
+class SchwarzPreconditioner {
+ public:
+  /// Takes entries of H from its near blocks. Throws Error(numerical) where a leaf's matrix is singular.
+  template <class T>
+  SchwarzPreconditioner(const TriangleMesh& mesh, const CompressedMatrix<T>& H);
+
+  /// In the tree's order. The same bits for any number of threads.
+  void apply(const VectorBlock& in, VectorBlock& out) const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct Leaf {
+    Index first = 0;             ///< row of the tree's order
+    std::size_t tiles = 0;       ///< of its rows of the inverse
+    std::vector<Index> sources;  ///< rows that these are multiplied with
+    detail::AlignedVector<float> inverse;
+  };
+
+  /// False for a singular matrix.
+  static bool invert(Eigen::MatrixXf entries, const Cluster& cluster, const std::vector<std::int32_t>& places,
+                     Leaf& leaf);
+
+  std::vector<Leaf> leaves_;
+};
+
+}  // namespace skinbem
