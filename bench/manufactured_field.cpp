@@ -3,11 +3,11 @@
 
 #include <omp.h>
 
+#include <skinbem/base/stopwatch.hpp>
 #include <skinbem/operator/collocation.hpp>
-#include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
+#include <skinbem/solve/solver_choice.hpp>
 
-#include "stopwatch.hpp"
 #ifdef SKINBEM_BENCH_RIVAL
 #include "tetrahedral_fem.hpp"
 #endif
@@ -38,25 +38,30 @@ Eigen::VectorXd single_layer(const TriangleMesh& skin, const Points& tractions, 
   return sum;
 }
 
+std::unique_ptr<NeumannSolver> make_solver(Solver choice, const TriangleMesh& skin, const Eigen::MatrixXd& B,
+                                           const ResponseCase& c) {
+  const Collocation<Kelvin<double>> collocation(skin, {c.poisson, 1.0}, {c.tolerance});
+  if (choice == Solver::dense) return make_dense_solver(collocation.double_layer_matrix(), B, 1e-2 * c.tolerance);
+  return make_iterative_solver(skin, collocation, B, IterativeOptions::for_tolerance(c.tolerance));
+}
+
 Solution by_boundary_elements(const TriangleMesh& skin, const Points& tractions, const ResponseCase& c) {
   Stopwatch watch;
-  const Collocation<Kelvin<double>> collocation(skin, {c.poisson, 1.0}, {c.tolerance});
   const Eigen::MatrixXd B = rigid_modes(skin.vertices);
-  RowMajorMatrix H = collocation.double_layer_matrix();
-  const double assemble = watch.lap();
-  const auto solver = make_dense_solver(std::move(H), B, 1e-2 * c.tolerance);
-  const double factor = watch.lap();
+  const Solver choice = choose_solver(Solver::automatic, skin, c.tolerance, c.threads, 0).solver;
+  const auto solver = make_solver(choice, skin, B, c);
+  const double prepare = watch.lap();
   const Eigen::VectorXd load = single_layer(skin, tractions, c.poisson, c.tolerance);
   const double load_seconds = watch.lap();
-  const Eigen::MatrixXd u = solver->solve(load);
+  SolveSummary ended;
+  const Eigen::MatrixXd u = solver->solve(load, &ended);
   const double solve = watch.lap();
   return {u,
-          {{"seconds",
-            {{"assemble", assemble},
-             {"factor", factor},
-             {"load", load_seconds},
-             {"solve", solve},
-             {"total", assemble + factor + solve}}}}};
+          {{"unknowns", 3 * skin.vertex_count()},
+           {"solver", name_of(choice)},
+           {"iterations", ended.iterations},
+           {"residual", ended.residual},
+           {"seconds", {{"prepare", prepare}, {"load", load_seconds}, {"solve", solve}, {"total", prepare + solve}}}}};
 }
 
 #ifdef SKINBEM_BENCH_RIVAL

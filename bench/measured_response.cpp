@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <fstream>
+#include <skinbem/base/stopwatch.hpp>
 #include <skinbem/io/npy.hpp>
 #include <skinbem/mesh/mesh_io.hpp>
 #include <skinbem/response/landmark_table.hpp>
 #include <skinbem/response/response_model.hpp>
 
-#include "stopwatch.hpp"
 #include "subdivision.hpp"
 #ifdef SKINBEM_BENCH_RIVAL
 #include "tetrahedral_fem.hpp"
@@ -31,6 +31,8 @@ Response by_boundary_elements(const Skin& skin, const ResponseCase& c) {
   const ResponseSummary& s = model.summary();
   response.facts = {
       {"unknowns", 3 * skin.mesh.vertex_count()},
+      {"solver", name_of(s.prediction.solver)},
+      {"predicted", {{"seconds", s.prediction.seconds}, {"bytes", s.prediction.bytes}}},
       {"seconds", {{"assemble", s.assemble_seconds}, {"factor", s.factor_seconds}, {"solve", s.solve_seconds}}},
       {"iterations", s.iterations},
       {"residual", s.residual},

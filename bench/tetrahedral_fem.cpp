@@ -6,12 +6,12 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <array>
+#include <skinbem/base/stopwatch.hpp>
 #include <skinbem/response/landmark_patch.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
 #include <utility>
 
 #include "stiffness_matrix.hpp"
-#include "stopwatch.hpp"
 
 namespace skinbem::bench {
 namespace {
