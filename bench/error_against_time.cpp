@@ -22,7 +22,7 @@ struct Options {
   std::filesystem::path data = SKINBEM_LOWER_LIMB, json = {};
   std::vector<double> poisson{0.45, 0.49};
   std::vector<std::string> qualities{"q", "qa3", "qa1"};
-  int levels = 4, known_levels = 3, repeats = 3, threads = 1;
+  int levels = 4, rival_levels = 5, known_levels = 3, repeats = 3, threads = 1;
   double radius = 15, tolerance = 2e-4, truth_tolerance = 1e-5, memory = 0, seconds = 600;
 };
 
@@ -35,12 +35,15 @@ Options parse(int argc, char** argv) {
   app.add_option("--quality", o.qualities, "TetGen's switches, e.g. q,qa3")->delimiter(',')->capture_default_str();
   app.add_option("--levels", o.levels,
                  "meshes: 606 vertices, four times as many, ...; the truth is extrapolated from "
-                 "the last three")
-      ->check(CLI::Range(3, 5))
+                 "the last three; 0: only the known field")
+      ->check(CLI::Range(3, 5) | CLI::IsMember({0}))
+      ->capture_default_str();
+  app.add_option("--rival-levels", o.rival_levels, "meshes for finite elements, where more than --levels")
+      ->check(CLI::Range(0, 5))
       ->capture_default_str();
   app.add_option("--known-levels", o.known_levels,
-                 "meshes for the known field, whose loads take time like their square")
-      ->check(CLI::Range(1, 5))
+                 "meshes for the known field, whose loads take time like their square; 0: only landmarks")
+      ->check(CLI::Range(0, 5))
       ->capture_default_str();
   app.add_option("--repeats", o.repeats, "runs of which the median counts")->capture_default_str();
   app.add_option("--threads", o.threads)->capture_default_str();
@@ -93,13 +96,14 @@ Truth extrapolate(const std::vector<Eigen::MatrixXd>& answers) {
   return {R, std::log2(ratio), (R - fine).norm() / R.norm()};
 }
 
-/// The last three of `skins` by the method of `c`, in the rows of the first skin's vertices; nothing where one fails.
+/// The last three of `levels` skins by the method of `c`, in the rows of the first's vertices; nothing where one fails.
 std::optional<Truth> truth_by(ResponseCase c, const std::vector<Skin>& skins, const Options& o) {
   const TemporaryFolder folder;
   c.keep = folder.path() / "R.npy";
   c.tolerance = o.truth_tolerance;
   std::vector<Eigen::MatrixXd> answers;
-  for (std::size_t i = skins.size() - 3; i < skins.size(); ++i) {
+  const auto levels = static_cast<std::size_t>(o.levels);
+  for (std::size_t i = levels - 3; i < levels; ++i) {
     const nlohmann::json run = measure_response(skins[i], c, limits_of(o));
     if (run.contains("failure")) {
       std::fprintf(stderr, "%s, %ld vertices: %s\n", name_of(c.method), skins[i].mesh.vertex_count(),
@@ -144,22 +148,23 @@ void take_turns(const std::string& experiment, const std::vector<ResponseCase>& 
 
 /// The response, against the extrapolated one; returns what there is to say of the truth.
 nlohmann::json compare_responses(double poisson, const Options& o, nlohmann::json& rows) {
-  const std::vector<Skin> skins = limb_skins(o.data, o.levels - 1, o.radius);
-  const std::vector<ResponseCase> cases = contenders(o, poisson);
+  const std::vector<Skin> skins = limb_skins(o.data, std::max(o.levels, o.rival_levels) - 1, o.radius);
+  std::vector<ResponseCase> cases = contenders(o, poisson);
   const std::optional<Truth> truth = truth_by(cases[0], skins, o);
   if (!truth) return {{"poisson", poisson}, {"failure", "the truth needs more memory or time"}};
   nlohmann::json facts = {{"poisson", poisson}, {"order", truth->order}, {"step", truth->step}};
   if (cases.size() > 1) {
-    if (const auto other = truth_by(cases[1], skins, o)) {
+    if (const auto other = truth_by(cases.back(), skins, o)) {
       facts.update({{"fem_order", other->order}, {"fem_step", other->step}});
       facts["fem_distance"] = (other->R - truth->R).norm() / truth->R.norm();
     }
   }
   const TemporaryFolder folder;
-  for (const Skin& skin : skins) {
+  for (std::size_t level = 0; level < skins.size(); ++level) {
+    if (level == static_cast<std::size_t>(o.levels)) cases.erase(cases.begin());  // the rivals go on alone
     const auto measure = [&](ResponseCase c) {
       c.keep = folder.path() / "R.npy";
-      nlohmann::json run = measure_response(skin, c, limits_of(o));
+      nlohmann::json run = measure_response(skins[level], c, limits_of(o));
       if (!run.contains("failure")) run.update(errors_of(read_npy(c.keep).topRows(truth->R.rows()), truth->R));
       return run;
     };
@@ -244,8 +249,8 @@ int main(int argc, char** argv) try {
       "| experiment | nu | method | vertices | total s | peak GB | rms error | max error |\n"
       "|---|---|---|---|---|---|---|---|\n");
   for (const double poisson : o.poisson) {
-    compare_with_known_field(poisson, o, rows);
-    truths.push_back(compare_responses(poisson, o, rows));
+    if (o.known_levels > 0) compare_with_known_field(poisson, o, rows);
+    if (o.levels > 0) truths.push_back(compare_responses(poisson, o, rows));
   }
   const nlohmann::json equal_error = at_equal_error(rows);
   print_equal_error(equal_error);

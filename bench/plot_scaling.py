@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of what bench/scaling and bench/error_against_time wrote with --json (needs Matplotlib).
 
-    plot_scaling.py -o FOLDER SCALING.json       time and memory against the number of vertices: scaling.png
-    plot_scaling.py -o FOLDER ERRORS.json        error against time: error_against_time.png
+    plot_scaling.py -o FOLDER SCALING.json...    time and memory against the number of vertices: scaling.png
+    plot_scaling.py -o FOLDER ERRORS.json...     error against time: error_against_time.png
+
+Several files of one kind make one picture.
 """
 import argparse
 import json
@@ -107,12 +109,13 @@ def main():
     parser.add_argument("reports", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("."), help="folder of the pictures")
     arguments = parser.parse_args()
-    for path in arguments.reports:
-        report = json.loads(path.read_text())
-        if "exponents" in report:
-            draw_scaling(report, arguments.output / "scaling.png")
-        else:
-            draw_errors(report, arguments.output / "error_against_time.png")
+    kinds = {"exponents": (draw_scaling, "scaling.png"), "truths": (draw_errors, "error_against_time.png")}
+    reports = [json.loads(path.read_text()) for path in arguments.reports]
+    for kind, (draw, name) in kinds.items():
+        parts = [report for report in reports if kind in report]
+        if parts:
+            lists = {key: sum((part[key] for part in parts), []) for key in ("runs", kind)}
+            draw(parts[0] | lists, arguments.output / name)
 
 
 if __name__ == "__main__":
