@@ -10,6 +10,8 @@
 namespace skinbem {
 namespace {
 
+constexpr double bases_share = 0.6;  ///< of the time
+
 Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
 
 /// Degrees of freedom of a leaf, filled up to whole panels.
@@ -58,7 +60,8 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
   const PointKernel<Kelvin<double>> kernel(mesh, tree_, collocation.kernel());
   report(progress, "compress", 0);
   const NestedBases bases =
-      make_nested_bases(mesh, tree_, partition_, collocation, kernel, {options.tolerance, options.samples});
+      make_nested_bases(mesh, tree_, partition_, collocation, kernel, {options.tolerance, options.samples},
+                        [&](double fraction) { report(progress, "compress", bases_share * fraction); });
   plan(bases);
   fill_bases(bases);
   summary_.basis_seconds = watch.lap();
@@ -270,9 +273,14 @@ template <class T>
 void CompressedMatrix<T>::fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress) {
   static_assert(kTile == components * kPanel);
   const std::int32_t count = std::int32_t(tree_.leaves().size());
+  const std::int32_t batch = 64 + count / 16;  // between two reports
+  for (std::int32_t first = 0; first < count; first += batch) {
 #pragma omp parallel for schedule(dynamic, 1)
-  for (std::int32_t k = 0; k < count; ++k) fill_near_leaf(collocation, tree_.leaves()[k]);
-  report(progress, "compress", 1);
+    for (std::int32_t k = first; k < std::min(count, first + batch); ++k) {
+      fill_near_leaf(collocation, tree_.leaves()[k]);
+    }
+    report(progress, "compress", bases_share + (1 - bases_share) * std::min(1.0, double(first + batch) / count));
+  }
 }
 
 /// Rigid translation: minus the sum of a row's other blocks.

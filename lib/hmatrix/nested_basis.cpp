@@ -227,7 +227,7 @@ ColumnSelection select_columns(const Eigen::Ref<const Eigen::MatrixXd>& gram, do
 template <class Kernel>
 NestedBases make_nested_bases(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition,
                               const Collocation<Kernel>& collocation, const PointKernel<Kernel>& kernel,
-                              const BasisOptions& options) {
+                              const BasisOptions& options, const std::function<void(double)>& done) {
   const std::vector<FarSamples> samples = sample_far_fields(mesh, tree, partition, options.samples);
   const IndexLists triangles = triangles_around_vertices(mesh);
   const std::size_t count = tree.clusters().size();
@@ -240,12 +240,13 @@ NestedBases make_nested_bases(const TriangleMesh& mesh, const ClusterTree& tree,
       bases.rows[c] = maker.row_basis(tree.clusters()[c], bases.rows);
       bases.columns[c] = maker.column_basis(tree.clusters()[c], bases.columns);
     }
+    done(1 - double(tree.levels()[level]) / double(count));
   }
   return bases;
 }
 
 template NestedBases make_nested_bases(const TriangleMesh&, const ClusterTree&, const BlockPartition&,
                                        const Collocation<Kelvin<double>>&, const PointKernel<Kelvin<double>>&,
-                                       const BasisOptions&);
+                                       const BasisOptions&, const std::function<void(double)>&);
 
 }  // namespace skinbem

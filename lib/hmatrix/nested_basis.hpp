@@ -3,6 +3,8 @@
 /// Nested bases of an H2-matrix by interpolative decomposition against samples of the far field.
 #pragma once
 
+#include <functional>
+
 #include <skinbem/hmatrix/far_field.hpp>
 
 namespace skinbem {
@@ -36,11 +38,12 @@ struct BasisOptions {
   Index samples = 192;
 };
 
-/// Bottom-up, all clusters of a level in parallel; the same bits for any number of threads.
+/// Bottom-up, all clusters of a level in parallel; the same bits for any number of threads. Calls done(fraction) after
+/// each level.
 template <class Kernel>
 NestedBases make_nested_bases(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition,
                               const Collocation<Kernel>& collocation, const PointKernel<Kernel>& kernel,
-                              const BasisOptions& options);
+                              const BasisOptions& options, const std::function<void(double)>& done);
 
 /// Columns of a matrix that the others follow from.
 struct ColumnSelection {
@@ -55,6 +58,6 @@ ColumnSelection select_columns(const Eigen::Ref<const Eigen::MatrixXd>& gram, do
 
 extern template NestedBases make_nested_bases(const TriangleMesh&, const ClusterTree&, const BlockPartition&,
                                               const Collocation<Kelvin<double>>&, const PointKernel<Kelvin<double>>&,
-                                              const BasisOptions&);
+                                              const BasisOptions&, const std::function<void(double)>&);
 
 }  // namespace skinbem
