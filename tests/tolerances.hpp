@@ -87,10 +87,21 @@ inline constexpr double finer_skin = 0.05;
 /// R written by the program with --tolerance 1e-10, against the exactly integrated one: what the option promises.
 inline constexpr double program_response = 1e-10;
 
+/// A product of a tile in single precision with random numbers, per root of its depth: its slices' roundings of 6e-8.
+inline constexpr double tile_product_f32 = 1e-6;
+/// The compressed matrix's numbers and sums in single precision, of columns of size 1.
+inline constexpr double compressed_f32 = 2e-6;
+/// What compression reaches, whatever is asked: normal equations.
+inline constexpr double compression = 3e-6;
+/// Columns chosen and expressed through A^T A, whose rounding is the square root of that of A.
+inline constexpr double normal_equations = 1e-7;
+/// Predicted against real bytes of a compressed matrix, whose ranks are guessed: a factor.
+inline constexpr double predicted_bytes = 2;
+
 /// A smooth surface through the 162 vertices of a sphere, between them: half of the facets' own distance, 0.01.
 inline constexpr double loop_sphere = 5e-3;
-/// A sparse Cholesky factorisation in double of a body of some hundred nodes: conditioned like (size / edge)^2 and, near
-/// Poisson's ratio 1/2, like lambda / mu.
+/// A sparse Cholesky factorisation in double of a body of some hundred nodes: conditioned like (size / edge)^2 and,
+/// near Poisson's ratio 1/2, like lambda / mu.
 inline constexpr double finite_elements = 1e-9;
 /// Finite against boundary elements on a sphere of 642 vertices: the discretisation errors of both (measured: 0.062).
 inline constexpr double finite_against_boundary_elements = 8e-2;

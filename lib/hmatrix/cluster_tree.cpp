@@ -29,10 +29,10 @@ void ClusterTree::split(std::int32_t cluster, const Points& vertices) {
   Eigen::AlignedBox3d box;
   for (std::int32_t k = begin; k < end; ++k) box.extend(vertices.row(order_[k]).transpose());
   clusters_[cluster].points = box;
-  if (end - begin <= leaf_size) return;
+  if (end - begin <= largest_leaf) return;
   Index axis = 0;
   box.sizes().maxCoeff(&axis);
-  const std::int32_t leaves = (end - begin + leaf_size - 1) / leaf_size;
+  const std::int32_t leaves = (end - begin - 1 + 2 * leaf_size - largest_leaf) / leaf_size;
   const std::int32_t middle = begin + leaf_size * (leaves / 2);
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](auto a, auto b) { return std::pair(vertices(a, axis), a) < std::pair(vertices(b, axis), b); });

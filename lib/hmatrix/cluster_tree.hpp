@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <skinbem/base/types.hpp>
+#include <skinbem/kernels/panel.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
 
 namespace skinbem {
@@ -25,11 +26,13 @@ struct Cluster {
   std::int32_t size() const { return end - begin; }
 };
 
-/// Halves the vertices across the longest side of their box until at most `leaf_size` are left. Every leaf but the last
-/// has exactly leaf_size vertices or a multiple of kPanel less, so that panels of rows never straddle two.
+/// Halves the vertices across the longest side of their box until about `leaf_size` are left. Every leaf but the last
+/// has exactly leaf_size vertices, so that panels of rows never straddle two. The last one has up to `largest_leaf`: a
+/// leaf of very few vertices would be seen as very few dipoles from afar.
 class ClusterTree {
  public:
   static constexpr std::int32_t leaf_size = 32;
+  static constexpr std::int32_t largest_leaf = leaf_size + std::int32_t(kPanel);
 
   explicit ClusterTree(const TriangleMesh& mesh);
 

@@ -129,7 +129,10 @@ std::vector<FarSamples> sample_far_fields(const TriangleMesh& mesh, const Cluste
       }
     }
     if (clusters[c].parent >= 0) add_thinned(samples[clusters[c].parent], inherited, own);
-    for (const std::int32_t place : own.places) own.triangles.push_back(triangles[tree.order()[place]].front());
+    for (std::size_t k = 0; k < own.places.size(); ++k) {  // in turn, or an edge would show one of its faces only
+      const auto around = triangles[tree.order()[own.places[k]]];
+      own.triangles.push_back(around[k % around.size()]);
+    }
     while (own.places.size() % kPanel != 0) {
       own.places.push_back(own.places.back());
       own.triangles.push_back(own.triangles.back());

@@ -112,6 +112,25 @@ TEST_P(KelvinPanel, SingleLayerEqualsTheScalarKernelForEveryMask) {
   }
 }
 
+TEST_P(KelvinPanel, DipolesEqualTheScalarKernel) {
+  const Scene scene(4);
+  std::array<double, kGaussPoints> normal[3];
+  for (std::size_t q = 0; q < kGaussPoints; ++q) {
+    const Eigen::Vector3d n = Eigen::Vector3d(0.1 * double(q), 1, -0.3 * double(q)).normalized();
+    for (int k = 0; k < 3; ++k) normal[k][q] = n[k];
+  }
+  for (const std::size_t count : {kGaussPoints, std::size_t{1}, std::size_t{0}}) {
+    const Dipoles dipoles{
+        count, scene.x.data(), scene.y.data(), scene.z.data(), {normal[0].data(), normal[1].data(), normal[2].data()}};
+    alignas(64) std::array<Entries, kGaussPoints> a, b;
+    double_layer_of_dipoles(batch_, scene.panel, dipoles, a[0].values.data());
+    double_layer_of_dipoles(scalar_, scene.panel, dipoles, b[0].values.data());
+    for (std::size_t q = 0; q < kGaussPoints; ++q) {
+      expect_same(a[q], b[q], q < count ? (1u << kPanel) - 1 : 0);  // what is behind them stays
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Poisson, KelvinPanel, ::testing::Values(-0.5, 0.0, 0.3, 0.45, 0.5));
 
 }  // namespace
