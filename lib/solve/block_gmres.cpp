@@ -78,6 +78,7 @@ class HessenbergSolver {
 VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, VectorBlock R,
                   const GmresOptions& options, GmresSummary& summary, const Progress& progress) {
   constexpr double negligible = 1e-13;
+  constexpr double long_enough = 1e-4;  // then rounding has not turned the directions by more than 1e-12
   const double largest = std::sqrt(inner_products(R, R).diagonal().maxCoeff());
   std::vector<VectorBlock> V;
   Eigen::MatrixXd right = orthonormalise(R, negligible * largest);
@@ -93,7 +94,8 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
     for (const auto& block : V) width += block.cols();
     Eigen::MatrixXd column = Eigen::MatrixXd::Zero(width, W.cols());
     Eigen::MatrixXd below = Eigen::MatrixXd::Identity(W.cols(), W.cols());
-    for (int pass = 0; pass < 2; ++pass) {  // twice is enough (Kahan)
+    double shortest = 0;  // of the new directions, before they are scaled
+    for (int pass = 0; pass < 2 && shortest < long_enough; ++pass) {  // twice is enough (Kahan), once often is
       Index row = 0;
       for (const auto& block : V) {
         const Eigen::MatrixXd S = inner_products(block, W);
@@ -101,7 +103,9 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
         column.middleRows(row, block.cols()) += S * below;
         row += block.cols();
       }
-      below = (orthonormalise(W, negligible) * below).eval();
+      const Eigen::MatrixXd factor = orthonormalise(W, negligible);
+      shortest = factor.rows() > 0 ? factor.rowwise().norm().minCoeff() : long_enough;
+      below = (factor * below).eval();
     }
     column.conservativeResize(width + W.cols(), Eigen::NoChange);
     column.bottomRows(W.cols()) = below;
