@@ -70,7 +70,7 @@ const TriangleMesh& limb() {
 
 Matrix compressed_limb() {
   const Collocation<Kelvin<double>> collocation(limb(), {}, {kTolerance});
-  return {limb(), collocation, IterativeOptions::for_tolerance(kTolerance).compression};
+  return {limb(), collocation, IterativeOptions::for_tolerance(kTolerance, limb().vertex_count()).compression};
 }
 
 void build(benchmark::State& state) {

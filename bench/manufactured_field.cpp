@@ -42,7 +42,7 @@ std::unique_ptr<NeumannSolver> make_solver(Solver choice, const TriangleMesh& sk
                                            const ResponseCase& c) {
   const Collocation<Kelvin<double>> collocation(skin, {c.poisson, 1.0}, {c.tolerance});
   if (choice == Solver::dense) return make_dense_solver(collocation.double_layer_matrix(), B, 1e-2 * c.tolerance);
-  return make_iterative_solver(skin, collocation, B, IterativeOptions::for_tolerance(c.tolerance));
+  return make_iterative_solver(skin, collocation, B, IterativeOptions::for_tolerance(c.tolerance, skin.vertex_count()));
 }
 
 Solution by_boundary_elements(const TriangleMesh& skin, const Points& tractions, const ResponseCase& c) {

@@ -73,7 +73,8 @@ struct ResponseModel::State {
 
   void make_compressed() {
     Stopwatch watch;
-    solver = make_iterative_solver(mesh, collocation, B, IterativeOptions::for_tolerance(options.tolerance),
+    solver = make_iterative_solver(mesh, collocation, B,
+                                   IterativeOptions::for_tolerance(options.tolerance, mesh.vertex_count()),
                                    options.progress);
     quadrature_error = options.tolerance * compressed_quadrature;
     summary.assemble_seconds = watch.lap();

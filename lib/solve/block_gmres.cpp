@@ -94,7 +94,7 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
     for (const auto& block : V) width += block.cols();
     Eigen::MatrixXd column = Eigen::MatrixXd::Zero(width, W.cols());
     Eigen::MatrixXd below = Eigen::MatrixXd::Identity(W.cols(), W.cols());
-    double shortest = 0;  // of the new directions, before they are scaled
+    double shortest = 0;                                              // of the new directions, before they are scaled
     for (int pass = 0; pass < 2 && shortest < long_enough; ++pass) {  // twice is enough (Kahan), once often is
       Index row = 0;
       for (const auto& block : V) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include <skinbem/hmatrix/exact_rows.hpp>
@@ -79,11 +80,12 @@ class CompressedSolver final : public NeumannSolver {
 
 }  // namespace
 
-IterativeOptions IterativeOptions::for_tolerance(double tolerance) {
+IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertices) {
   IterativeOptions options;
-  options.compression.tolerance = tolerance / 3;
+  const double levels = std::pow(std::max(1.0, double(vertices) / 1e4), -0.25);  // of the tree, whose errors add up
+  options.compression.tolerance = tolerance * levels / (tolerance >= 1e-4 ? 3 : 5);
   options.compression.samples = tolerance >= 1e-4 ? 192 : tolerance >= 1e-5 ? 384 : 640;
-  options.residual = std::min(1e-3, 2.5 * tolerance);
+  options.residual = std::min(1e-3, 2 * tolerance);
   options.single = tolerance >= 2e-5;
   return options;
 }

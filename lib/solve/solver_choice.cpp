@@ -27,7 +27,7 @@ SolverPrediction predict_dense(double n, double threads) {
 
 SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, double threads) {
   const double n = static_cast<double>(mesh.vertex_count());
-  const IterativeOptions options = IterativeOptions::for_tolerance(tolerance);
+  const IterativeOptions options = IterativeOptions::for_tolerance(tolerance, mesh.vertex_count());
   const double digits = -std::log10(tolerance);
   const double seconds_per_vertex = 3e-5 * digits * digits;  // at two and more digits
   const double blocks_of_the_basis = 4 * digits, columns = 18;
