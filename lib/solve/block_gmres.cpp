@@ -18,8 +18,9 @@ Index chunk_count(Index rows) { return (rows + chunk_rows - 1) / chunk_rows; }
 /// W = Q R with orthonormal columns of Q, as many as W has independent directions (singular values above `negligible`);
 /// W becomes Q. Singular vector QR: Stathopoulos and Wu, SIAM J. Sci. Comput. 23 (2002), twice for orthogonality.
 Eigen::MatrixXd orthonormalise(VectorBlock& W, double negligible) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(W, W));
   const Index n = W.cols();
+  if (n == 0) return Eigen::MatrixXd(0, 0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(W, W));
   Index kept = 0;
   while (kept < n && eigen.eigenvalues()[n - 1 - kept] > negligible * negligible) ++kept;
   const Eigen::VectorXd sigma = eigen.eigenvalues().tail(kept).cwiseSqrt();
@@ -128,7 +129,7 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
 Eigen::MatrixXd inner_products(const VectorBlock& V, const VectorBlock& W) {
   const Index chunks = chunk_count(V.rows());
   std::vector<RowMajorMatrix> parts(chunks);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (chunks > 1)
   for (Index k = 0; k < chunks; ++k) {
     const Index first = k * chunk_rows, rows = std::min(chunk_rows, V.rows() - first);
     parts[k].resize(V.cols(), W.cols());
@@ -141,7 +142,7 @@ Eigen::MatrixXd inner_products(const VectorBlock& V, const VectorBlock& W) {
 
 void add_product(const VectorBlock& V, const RowMajorMatrix& S, VectorBlock& W) {
   const Index chunks = chunk_count(V.rows());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (chunks > 1)
   for (Index k = 0; k < chunks; ++k) {
     const Index first = k * chunk_rows, rows = std::min(chunk_rows, V.rows() - first);
     lapack::add_product(V.data() + first * V.cols(), S, rows, W.data() + first * W.cols());

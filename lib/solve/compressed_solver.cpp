@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include <skinbem/hmatrix/exact_rows.hpp>
@@ -17,7 +18,7 @@ class CompressedSolver final : public NeumannSolver {
   CompressedSolver(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation, const Eigen::MatrixXd& B,
                    const IterativeOptions& options, const Progress& progress)
       : H_(mesh, collocation, options.compression, progress),
-        schwarz_(mesh, H_),
+        schwarz_(mesh, H_, B),
         exact_(collocation),
         rigid_(B),
         B_(H_.to_tree(B)),
@@ -44,16 +45,22 @@ class CompressedSolver final : public NeumannSolver {
     }
     const Eigen::MatrixXd difference =
         exact_.multiply(Y) + exact_.pick(rigid_ * (rigid_.transpose() * Y)) - exact_.pick(G);
-    ended.sampled_residual = exact_.estimate_norms(difference).cwiseQuotient(G.colwise().norm()).maxCoeff();
+    const Eigen::RowVectorXd size = G.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
+    ended.sampled_residual = exact_.estimate_norms(difference).cwiseQuotient(size).maxCoeff();
     if (summary) *summary = ended;
     return Y;
   }
 
   Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const override {
+    Eigen::MatrixXd result(V.rows(), V.cols());
     VectorBlock product;
     typename CompressedMatrix<T>::Block work;
-    H_.multiply(H_.to_tree(V), product, work);
-    return H_.from_tree(product);
+    for (Index first = 0; first < V.cols(); first += most_columns) {
+      const Index width = std::min(most_columns, V.cols() - first);
+      H_.multiply(H_.to_tree(V.middleCols(first, width)), product, work);
+      result.middleCols(first, width) = H_.from_tree(product);
+    }
+    return result;
   }
 
  private:

@@ -96,10 +96,21 @@ Index dof_row(std::int32_t place, int component) {
   return (place / Index(kPanel) * components + component) * Index(kPanel) + place % Index(kPanel);
 }
 
+/// Those that belong to the vertices at these places.
+Eigen::MatrixXf rows_of(const Eigen::MatrixXd& B, const ClusterTree& tree, const std::vector<std::int32_t>& places) {
+  Eigen::MatrixXf rows(components * Index(places.size()), B.cols());
+  for (Index k = 0; k < Index(places.size()); ++k) {
+    rows.middleRows<components>(components * k) =
+        B.middleRows<components>(components * Index(tree.order()[places[k]])).cast<float>();
+  }
+  return rows;
+}
+
 }  // namespace
 
 template <class T>
-SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh& mesh, const CompressedMatrix<T>& H) {
+SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh& mesh, const CompressedMatrix<T>& H,
+                                             const Eigen::MatrixXd& B) {
   const ClusterTree& tree = H.tree();
   const Surroundings surroundings(mesh, tree, H.partition());
   leaves_.resize(tree.leaves().size());
@@ -108,7 +119,10 @@ SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh& mesh, const Com
   for (std::size_t k = 0; k < leaves_.size(); ++k) {
     const std::vector<std::int32_t> places = surroundings(tree.leaves()[k]);
     const Cluster& cluster = tree.clusters()[tree.leaves()[k]];
-    if (!invert(H.near_entries(places), cluster, places, leaves_[k])) singular = true;
+    Eigen::MatrixXf entries = H.near_entries(places);
+    const Eigen::MatrixXf rigid = rows_of(B, tree, places);
+    entries.noalias() += rigid * rigid.transpose();  // a small body is all around its leaves
+    if (!invert(std::move(entries), cluster, places, leaves_[k])) singular = true;
   }
   if (singular) {
     throw Error(ErrorCode::numerical, "the equations around some vertices are singular; check the mesh there");
@@ -168,7 +182,9 @@ std::size_t SchwarzPreconditioner::bytes() const {
   return sum;
 }
 
-template SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh&, const CompressedMatrix<float>&);
-template SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh&, const CompressedMatrix<double>&);
+template SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh&, const CompressedMatrix<float>&,
+                                                      const Eigen::MatrixXd&);
+template SchwarzPreconditioner::SchwarzPreconditioner(const TriangleMesh&, const CompressedMatrix<double>&,
+                                                      const Eigen::MatrixXd&);
 
 }  // namespace skinbem

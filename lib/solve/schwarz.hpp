@@ -7,14 +7,15 @@
 
 namespace skinbem {
 
-/// For each leaf the matrix of its vertices and of those around it is inverted and the leaf's rows of the inverse are
-/// kept (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). Around means within two mean edge lengths and, where the body
-/// is thin, as far as the opposite side.
+/// Of H + B B^T. For each leaf the matrix of its vertices and of those around it is inverted and the leaf's rows of the
+/// inverse are kept (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). Around means within two mean edge lengths and,
+/// where the body is thin, as far as the opposite side.
 class SchwarzPreconditioner {
  public:
-  /// Takes entries of H from its near blocks. Throws Error(numerical) where a leaf's matrix is singular.
+  /// Takes entries of H from its near blocks; B (rigid_modes) in the order of the mesh. Throws Error(numerical) where a
+  /// leaf's matrix is singular.
   template <class T>
-  SchwarzPreconditioner(const TriangleMesh& mesh, const CompressedMatrix<T>& H);
+  SchwarzPreconditioner(const TriangleMesh& mesh, const CompressedMatrix<T>& H, const Eigen::MatrixXd& B);
 
   /// In the tree's order. The same bits for any number of threads.
   void apply(const VectorBlock& in, VectorBlock& out) const;
