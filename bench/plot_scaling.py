@@ -9,7 +9,9 @@ Several files of one kind make one picture.
 """
 import argparse
 import json
+import math
 import pathlib
+from statistics import linear_regression
 
 import matplotlib
 
@@ -44,21 +46,20 @@ def axes_of(axis, xlabel, ylabel):
     axis.spines[["top", "right"]].set_visible(False)
 
 
-def exponent(report, method, threads, quantity):
-    for fit in report["exponents"]:
-        if (fit["method"], fit["threads"]) == (method, threads):
-            return f" $N^{{{fit[quantity]:.2f}}}$"
-    return ""
+def exponent(runs, value, fewest=5000):
+    """Slope over the runs of at least so many vertices, as text."""
+    points = [(math.log(r["vertices"]), math.log(value(r))) for r in runs if r["vertices"] >= fewest]
+    return f" $N^{{{linear_regression(*zip(*points)).slope:.2f}}}$" if len(points) > 1 else ""
 
 
-def draw_quantity(axis, report, quantity, value):
+def draw_quantity(axis, report, value):
     """One line a method and number of threads for the limb, hollow marks for the skins that were given."""
     for method in values(report, "method"):
         for dashes, threads in zip(DASHES, values(report, "threads")):
             label = f"{NAME[method]}, {threads} thread{'s' if threads > 1 else ''}"
-            label += exponent(report, method, threads, quantity)
             style = {"color": COLOUR[method], "marker": MARKER[method]}
             limb = finished(report, method=method, threads=threads, family="limb")
+            label += exponent(limb, value)
             axis.plot([r["vertices"] for r in limb], [value(r) for r in limb], ls=dashes, label=label, **style)
             given = finished(report, method=method, threads=threads, family="given")
             axis.plot([r["vertices"] for r in given], [value(r) for r in given], ls="", mfc="none", **style)
@@ -69,8 +70,8 @@ def draw_scaling(report, path):
     figure, (time, memory) = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained")
     axes_of(time, "vertices N", "mesh to response matrix, s")
     axes_of(memory, "vertices N", "peak memory, GB")
-    draw_quantity(time, report, "time", lambda r: r["seconds"]["total"])
-    draw_quantity(memory, report, "memory", lambda r: r["peak_bytes"] / 1e9)
+    draw_quantity(time, report, lambda r: r["seconds"]["total"])
+    draw_quantity(memory, report, lambda r: r["peak_bytes"] / 1e9)
     figure.suptitle(f"six landmarks of radius {report['landmark_radius']:g} mm on a limb; {report['processor']}", fontsize=9)
     figure.savefig(path, dpi=130)
 

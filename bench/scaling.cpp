@@ -22,7 +22,7 @@ struct Options {
   std::filesystem::path data = SKINBEM_LOWER_LIMB;
   std::filesystem::path skins = {}, json = {};
   std::vector<int> threads{1};
-  Index largest = 160000;
+  Index smallest = 0, largest = 160000;
   int repeats = 3;
   double radius = 15, fit_from = 5000, memory = 0, seconds = 600, reference = 0;
   bool quick = false;
@@ -36,6 +36,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--skins", o.skins, "folder of more skins (skin*.obj, landmarks.csv)");
   app.add_option("--json", o.json, "write all numbers to this file");
   app.add_option("--threads", o.threads, "numbers of threads, e.g. 1,2")->delimiter(',')->capture_default_str();
+  app.add_option("--smallest", o.smallest, "skip skins of fewer vertices")->capture_default_str();
   app.add_option("--largest", o.largest, "skip skins of more vertices")->capture_default_str();
   app.add_option("--repeats", o.repeats, "runs of which the median counts")->capture_default_str();
   app.add_option("--tolerance", o.common.tolerance, "of boundary elements")->capture_default_str();
@@ -66,6 +67,7 @@ std::vector<Skin> skins_of(const Options& o) {
       if (skin.mesh.vertex_count() <= o.largest) skins.push_back(std::move(skin));
     }
   }
+  std::erase_if(skins, [&](const Skin& skin) { return skin.mesh.vertex_count() < o.smallest; });
   return skins;
 }
 
