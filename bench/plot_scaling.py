@@ -72,7 +72,7 @@ def draw_scaling(report, path):
     axes_of(memory, "vertices N", "peak memory, GB")
     draw_quantity(time, report, lambda r: r["seconds"]["total"])
     draw_quantity(memory, report, lambda r: r["peak_bytes"] / 1e9)
-    figure.suptitle(f"six landmarks of radius {report['landmark_radius']:g} mm on a limb; {report['processor']}", fontsize=9)
+    figure.suptitle(f"six landmarks of radius {report['landmark_radius']:g} mm on a limb (hollow: other meshes of it); {report['processor']}", fontsize=9)
     figure.savefig(path, dpi=130)
 
 
@@ -84,6 +84,8 @@ def draw_errors_of(axis, report, experiment, poisson):
         qualities = values({"runs": finished(report, method=method)}, "quality") or [None]
         for dashes, quality in zip(DASHES, qualities):
             runs = finished(report, experiment=experiment, poisson=poisson, method=method, quality=quality)
+            if not runs:
+                continue
             label = NAME[method] + (f" ({quality})" if len(qualities) > 1 else "")
             time, error = [r["seconds"]["total"] for r in runs], [r["rms_error"] for r in runs]
             axis.plot(time, error, ls=dashes, color=COLOUR[method], marker=MARKER[method], label=label)
