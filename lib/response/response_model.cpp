@@ -237,6 +237,7 @@ void ResponseModel::remove(Index k) {
 }
 
 std::vector<GreensFunctions> ResponseModel::greens_functions(std::span<const Landmark> landmarks) {
+  if (landmarks.empty()) return {};
   return state_->solve(landmarks);
 }
 
