@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include <skinbem/base/error.hpp>
+#include <skinbem/base/stopwatch.hpp>
 
 namespace {
 bool progress_shown = false;
@@ -19,7 +20,7 @@ void warn(const std::string& message) {
 
 skinbem::Progress terminal_progress() {
   if (!isatty(STDERR_FILENO)) return {};
-  return [last = -1.0, watch = Stopwatch()](std::string_view stage, double fraction) mutable {
+  return [last = -1.0, watch = skinbem::Stopwatch()](std::string_view stage, double fraction) mutable {
     if (last < 0 || watch.seconds() - last > 0.1) {
       last = watch.seconds();
       fmt::print(stderr, "\r\033[K{} {:3.0f} %", stage, 100 * fraction);

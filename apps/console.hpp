@@ -3,7 +3,6 @@
 /// What goes to the terminal beside results: messages and progress, on stderr.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,12 +22,3 @@ void end_progress();
 void require_writable(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 /// The same for an output that is no folder.
 void require_writable_file(const std::filesystem::path& output, const std::vector<std::string>& inputs);
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};

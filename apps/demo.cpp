@@ -6,6 +6,7 @@
 
 #include <skinbem/base/atomic_file.hpp>
 #include <skinbem/base/error.hpp>
+#include <skinbem/base/stopwatch.hpp>
 #include <skinbem/frame/frame_model.hpp>
 #include <skinbem/io/npy.hpp>
 #include <skinbem/io/picture.hpp>
@@ -42,7 +43,7 @@ double frame_seconds(const ResponseRun& run, const Animation& animation) {
   std::vector<float> positions(3 * static_cast<std::size_t>(model.vertex_count()));
   skinbem::Points displacements(model.landmark_count(), 3);
   constexpr int repetitions = 5000;
-  const Stopwatch watch;
+  const skinbem::Stopwatch watch;
   for (int i = 0; i < repetitions; ++i) {
     const Eigen::VectorXd weights = animation.skin.weights.row(i % animation.skin.frame_count());
     displacements = Eigen::Map<const skinbem::Points>(weights.data(), model.landmark_count(), 3);

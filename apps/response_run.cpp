@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include <skinbem/base/error.hpp>
+#include <skinbem/base/stopwatch.hpp>
 #include <skinbem/io/npy.hpp>
 #include <skinbem/mesh/adjacency.hpp>
 #include <skinbem/mesh/mesh_io.hpp>
@@ -100,6 +101,7 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
       ->transform(word<skinbem::Solver>({{"auto", skinbem::Solver::automatic},
                                          {"dense", skinbem::Solver::dense},
                                          {"hmatrix", skinbem::Solver::hmatrix}}))
+      ->type_name("TEXT")
       ->default_str("auto");
   command.add_option("--memory", options.memory_gigabytes, "GB that may be used; 0: what the system has available")
       ->check(number([](double value) { return value >= 0; }, "a size in GB, zero or more"))
@@ -116,7 +118,7 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
 }
 
 ResponseRun run_response(const ResponseRunOptions& options, const std::string& response_file) {
-  const Stopwatch total;
+  const skinbem::Stopwatch total;
   if (options.threads > 0) omp_set_num_threads(options.threads);
   ResponseRun run;
   read_inputs(options, run);

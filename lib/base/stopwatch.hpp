@@ -9,16 +9,18 @@ namespace skinbem {
 
 class Stopwatch {
  public:
-  /// Seconds since the last call, or since construction.
+  /// Seconds since the last lap, or since construction.
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  /// The same, and begins the next lap.
   double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-    return seconds;
+    const double elapsed = seconds();
+    start_ = Clock::now();
+    return elapsed;
   }
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace skinbem

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include <skinbem/base/error.hpp>
 #include <skinbem/base/aligned_buffer.hpp>
+#include <skinbem/base/error.hpp>
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <immintrin.h>

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include <skinbem/base/types.hpp>
 #include <skinbem/base/aligned_buffer.hpp>
+#include <skinbem/base/types.hpp>
 #include <skinbem/frame/panel_product.hpp>
 
 namespace skinbem::detail {

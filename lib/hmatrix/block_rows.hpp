@@ -35,7 +35,6 @@ template <class T>
 class BlockRows {
  public:
   using Block = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  static constexpr Index most_columns = 48;  ///< of right-hand sides at once
 
   /// Rows that are added from now on belong to a new stage.
   void begin_stage() { stages_.push_back(rows_.size()); }
@@ -55,7 +54,7 @@ class BlockRows {
     return const_cast<BlockRows*>(this)->tile_column(row, r, k);
   }
 
-  /// Runs the schedule over a workspace (rows by at most most_columns, row-major). The same bits for any number of
+  /// Runs the schedule over a workspace (rows by at most kMostColumns, row-major). The same bits for any number of
   /// threads.
   void run(Block& work) const;
 

@@ -26,6 +26,12 @@ struct Cluster {
   std::int32_t size() const { return end - begin; }
 };
 
+/// Row of a component of the vertex at a place in the tree's order of vectors: by panel of kPanel vertices, component,
+/// vertex. The same within a leaf, with places counted from its first.
+inline Index tree_row(Index place, int component, int components) {
+  return (place / Index(kPanel) * components + component) * Index(kPanel) + place % Index(kPanel);
+}
+
 /// Halves the vertices across the longest side of their box until about `leaf_size` are left. Every leaf but the last
 /// has exactly leaf_size vertices, so that panels of rows never straddle two. The last one has up to `largest_leaf`: a
 /// leaf of very few vertices would be seen as very few dipoles from afar.

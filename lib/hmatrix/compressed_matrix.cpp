@@ -19,30 +19,10 @@ WorkRange dofs_of(const Cluster& leaf, int components) {
   return {Index(leaf.begin) * components, round_up(leaf.size(), kPanel) * components};
 }
 
-/// Where a degree of freedom stands in the tree's order.
-Index dof_row(std::int32_t place, int component, int components) {
-  const Index panel = place / Index(kPanel);
-  return (panel * components + component) * Index(kPanel) + place % Index(kPanel);
-}
-
-/// Skeletons as lists of points, each once.
-struct SkeletonPoints {
-  std::vector<std::int32_t> points;
-  std::vector<std::int32_t> of_dof;
-};
-
-std::vector<SkeletonPoints> points_of(const std::vector<ClusterBasis>& bases) {
-  std::vector<SkeletonPoints> result(bases.size());
-  for (std::size_t c = 0; c < bases.size(); ++c) {
-    auto& [points, of_dof] = result[c];
-    for (const Dof& dof : bases[c].skeleton) points.push_back(dof.point);
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    for (const Dof& dof : bases[c].skeleton) {
-      of_dof.push_back(std::int32_t(std::lower_bound(points.begin(), points.end(), dof.point) - points.begin()));
-    }
-  }
-  return result;
+std::vector<PointList> points_of(const std::vector<ClusterBasis>& bases) {
+  std::vector<PointList> lists;
+  for (const ClusterBasis& basis : bases) lists.emplace_back(basis.skeleton);
+  return lists;
 }
 
 }  // namespace
@@ -76,74 +56,89 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
 /// skeletons from the root down, vectors out.
 template <class T>
 void CompressedMatrix<T>::plan(const NestedBases& bases) {
-  const auto& clusters = tree_.clusters();
-  const std::size_t count = clusters.size();
   Index end = rows_;
-  const auto reserve = [&](std::size_t rank) {
-    const WorkRange range{end, round_up(Index(rank), kTileStep)};
-    end += range.length;
-    return range;
+  const auto reserve = [&](const std::vector<ClusterBasis>& of) {
+    std::vector<WorkRange> ranges;
+    for (const ClusterBasis& basis : of) {
+      ranges.push_back({end, Index(basis.skeleton.size())});
+      end += round_up(ranges.back().length, kTileStep);
+    }
+    return ranges;
   };
-  std::vector<WorkRange> column_coefficients(count), row_coefficients(count);
-  for (std::size_t c = 0; c < count; ++c) column_coefficients[c] = reserve(bases.columns[c].skeleton.size());
-  for (std::size_t c = 0; c < count; ++c) row_coefficients[c] = reserve(bases.rows[c].skeleton.size());
-  const Index out = end;
-  work_rows_ = out + rows_;
-  const auto used = [](WorkRange range, const ClusterBasis& basis) {
-    return WorkRange{range.first, Index(basis.skeleton.size())};
-  };
+  const std::vector<WorkRange> columns = reserve(bases.columns), rows = reserve(bases.rows);
+  work_rows_ = end + rows_;
+  plan_upwards(columns);
+  plan_downwards(columns, rows);
+  plan_leaves(rows, end);
+  schedule_.allocate();
 
-  up_.assign(count, -1);
-  coupling_.assign(count, -1);
-  out_.assign(count, -1);
-  double ranks = 0, ranked = 0;
+  const auto add_rank = [](double sum, const WorkRange& range) { return sum + double(range.length); };
+  const auto used = [](const WorkRange& range) { return range.length > 0; };
+  const double ranks = std::accumulate(rows.begin(), rows.end(), 0.0, add_rank) +
+                       std::accumulate(columns.begin(), columns.end(), 0.0, add_rank);
+  const auto count =
+      std::count_if(rows.begin(), rows.end(), used) + std::count_if(columns.begin(), columns.end(), used);
+  summary_.mean_rank = count > 0 ? ranks / double(count) : 0;
+}
+
+template <class T>
+std::int32_t CompressedMatrix<T>::add_row(WorkRange out, std::vector<WorkRange> sources, std::size_t& bytes) {
+  const std::size_t row = schedule_.add({out.first, round_up(out.length, kTileStep)}, std::move(sources));
+  bytes += schedule_.row(row).numbers() * sizeof(T);
+  return std::int32_t(row);
+}
+
+/// Coefficients of the columns' skeletons, from a leaf's degrees of freedom or those of the two children.
+template <class T>
+void CompressedMatrix<T>::plan_upwards(const std::vector<WorkRange>& columns) {
+  up_.assign(columns.size(), -1);
   for (std::size_t level = tree_.levels().size() - 1; level-- > 0;) {
     schedule_.begin_stage();
     for (std::int32_t c = tree_.levels()[level]; c < tree_.levels()[level + 1]; ++c) {
-      if (bases.columns[c].skeleton.empty()) continue;
+      if (columns[c].length == 0) continue;
+      const Cluster& cluster = tree_.clusters()[c];
       std::vector<WorkRange> sources;
-      if (clusters[c].is_leaf()) {
-        sources.push_back(dofs_of(clusters[c], components));
+      if (cluster.is_leaf()) {
+        sources.push_back(dofs_of(cluster, components));
       } else {
-        for (const std::int32_t child : clusters[c].children) {
-          sources.push_back(used(column_coefficients[child], bases.columns[child]));
-        }
+        for (const std::int32_t child : cluster.children) sources.push_back(columns[child]);
       }
-      up_[c] = std::int32_t(schedule_.add(column_coefficients[c], std::move(sources)));
-      summary_.basis_bytes += schedule_.row(up_[c]).numbers() * sizeof(T);
-      ranks += double(bases.columns[c].skeleton.size() + bases.rows[c].skeleton.size());
-      ranked += 2;
+      up_[c] = add_row(columns[c], std::move(sources), summary_.basis_bytes);
     }
   }
+}
+
+/// Coefficients of the rows' skeletons, from those of far columns and of the parent.
+template <class T>
+void CompressedMatrix<T>::plan_downwards(const std::vector<WorkRange>& columns, const std::vector<WorkRange>& rows) {
+  coupling_.assign(rows.size(), -1);
   for (std::size_t level = 0; level + 1 < tree_.levels().size(); ++level) {
     schedule_.begin_stage();
     for (std::int32_t c = tree_.levels()[level]; c < tree_.levels()[level + 1]; ++c) {
-      if (bases.rows[c].skeleton.empty()) continue;
+      if (rows[c].length == 0) continue;
       std::vector<WorkRange> sources;
-      for (const std::int32_t partner : partition_.far[c]) {
-        sources.push_back(used(column_coefficients[partner], bases.columns[partner]));
-      }
-      const std::int32_t parent = clusters[c].parent;
-      if (parent >= 0 && !bases.rows[parent].skeleton.empty()) {
-        sources.push_back(used(row_coefficients[parent], bases.rows[parent]));
-      }
-      coupling_[c] = std::int32_t(schedule_.add(row_coefficients[c], std::move(sources)));
-      summary_.coupling_bytes += schedule_.row(coupling_[c]).numbers() * sizeof(T);
+      for (const std::int32_t partner : partition_.far[c]) sources.push_back(columns[partner]);
+      const std::int32_t parent = tree_.clusters()[c].parent;
+      if (parent >= 0 && rows[parent].length > 0) sources.push_back(rows[parent]);
+      coupling_[c] = add_row(rows[c], std::move(sources), summary_.coupling_bytes);
     }
   }
+}
+
+/// Vectors out, `out` rows into the workspace, from the neighbours' degrees of freedom and the leaf's coefficients.
+template <class T>
+void CompressedMatrix<T>::plan_leaves(const std::vector<WorkRange>& rows, Index out) {
+  out_.assign(rows.size(), -1);
   schedule_.begin_stage();
   for (const std::int32_t leaf : tree_.leaves()) {
     std::vector<WorkRange> sources;
     for (const std::int32_t neighbour : partition_.near[leaf]) {
-      sources.push_back(dofs_of(clusters[neighbour], components));
+      sources.push_back(dofs_of(tree_.clusters()[neighbour], components));
     }
-    if (!bases.rows[leaf].skeleton.empty()) sources.push_back(used(row_coefficients[leaf], bases.rows[leaf]));
-    const WorkRange rows = dofs_of(clusters[leaf], components);
-    out_[leaf] = std::int32_t(schedule_.add({out + rows.first, rows.length}, std::move(sources)));
-    summary_.near_bytes += schedule_.row(out_[leaf]).numbers() * sizeof(T);
+    if (rows[leaf].length > 0) sources.push_back(rows[leaf]);
+    const WorkRange dofs = dofs_of(tree_.clusters()[leaf], components);
+    out_[leaf] = add_row({out + dofs.first, dofs.length}, std::move(sources), summary_.near_bytes);
   }
-  summary_.mean_rank = ranked > 0 ? ranks / ranked : 0;
-  schedule_.allocate();
 }
 
 namespace {
@@ -191,7 +186,7 @@ void CompressedMatrix<T>::fill_bases(const NestedBases& bases) {
 
 template <class T>
 void CompressedMatrix<T>::fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel) {
-  const std::vector<SkeletonPoints> rows = points_of(bases.rows), columns = points_of(bases.columns);
+  const std::vector<PointList> rows = points_of(bases.rows), columns = points_of(bases.columns);
   const std::int32_t count = std::int32_t(tree_.clusters().size());
   constexpr std::size_t entries = components * components;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -243,7 +238,7 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
       const Cluster& neighbour = tree_.clusters()[near[n]];
       for (std::int32_t k = neighbour.begin; k < neighbour.end; ++k) {
         columns.push_back(tree_.order()[k]);
-        place.push_back(first_column + dof_row(k - neighbour.begin, 0, components));
+        place.push_back(first_column + tree_row(k - neighbour.begin, 0, components));
       }
       const WorkRange dofs = dofs_of(neighbour, components);
       const bool full = neighbour.size() % std::int32_t(kPanel) == 0;
@@ -297,9 +292,9 @@ void CompressedMatrix<T>::set_diagonal() {
     for (std::int32_t place = cluster.begin; place < cluster.end; ++place) {
       for (int i = 0; i < components; ++i) {
         for (int j = 0; j < components; ++j) {
-          const Index row = dof_row(place - cluster.begin, i, components);
-          T* column = schedule_.tile_column(out_[leaf], row, own + dof_row(place - cluster.begin, j, components));
-          column[row % Index(kTile)] = T(-sums(dof_row(place, i, components), j));
+          const Index row = tree_row(place - cluster.begin, i, components);
+          T* column = schedule_.tile_column(out_[leaf], row, own + tree_row(place - cluster.begin, j, components));
+          column[row % Index(kTile)] = T(-sums(tree_row(place, i, components), j));
         }
       }
     }
@@ -311,7 +306,7 @@ VectorBlock CompressedMatrix<T>::to_tree(const Eigen::MatrixXd& vectors) const {
   VectorBlock result = VectorBlock::Zero(rows_, vectors.cols());
   for (std::int32_t place = 0; place < std::int32_t(tree_.order().size()); ++place) {
     for (int i = 0; i < components; ++i) {
-      result.row(dof_row(place, i, components)) = vectors.row(Index(tree_.order()[place]) * components + i);
+      result.row(tree_row(place, i, components)) = vectors.row(Index(tree_.order()[place]) * components + i);
     }
   }
   return result;
@@ -322,7 +317,7 @@ Eigen::MatrixXd CompressedMatrix<T>::from_tree(const VectorBlock& vectors) const
   Eigen::MatrixXd result(Index(tree_.order().size()) * components, vectors.cols());
   for (std::int32_t place = 0; place < std::int32_t(tree_.order().size()); ++place) {
     for (int i = 0; i < components; ++i) {
-      result.row(Index(tree_.order()[place]) * components + i) = vectors.row(dof_row(place, i, components));
+      result.row(Index(tree_.order()[place]) * components + i) = vectors.row(tree_row(place, i, components));
     }
   }
   return result;
@@ -353,8 +348,8 @@ Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t
       const std::int32_t row_place = places[r] - tree_.clusters()[row_leaf].begin;
       const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
       for (int j = 0; j < components; ++j) {
-        const T* column = schedule_.tile_column(out_[row_leaf], dof_row(row_place, 0, components),
-                                                first + dof_row(column_place, j, components));
+        const T* column = schedule_.tile_column(out_[row_leaf], tree_row(row_place, 0, components),
+                                                first + tree_row(column_place, j, components));
         for (int i = 0; i < components; ++i) {
           entries(components * r + i, components * c + j) =
               float(column[i * Index(kPanel) + row_place % Index(kPanel)]);

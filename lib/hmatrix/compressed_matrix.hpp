@@ -36,7 +36,7 @@ struct CompressionSummary {
 /// H (3N by 3N) with T = float or double numbers, as near blocks of neighbouring leaves, and for the far field nested
 /// bases (interpolative decomposition: Martinsson, Rokhlin, Tygert 2005; nested: Boerm 2010) with couplings that are
 /// values of the kernel between two skeletons: H ~ near + P S Q^T. Diagonal blocks make H 1 = 0. Vectors are in the
-/// tree's order: by panel of kPanel vertices, component, vertex, filled up to a whole panel.
+/// tree's order (tree_row), filled up to a whole panel.
 template <class T>
 class CompressedMatrix {
  public:
@@ -51,7 +51,7 @@ class CompressedMatrix {
   VectorBlock to_tree(const Eigen::MatrixXd& vectors) const;
   Eigen::MatrixXd from_tree(const VectorBlock& vectors) const;
 
-  /// Y = H X in the tree's order, at most BlockRows<T>::most_columns columns. `work` is scratch space that is kept.
+  /// Y = H X in the tree's order, at most kMostColumns columns. `work` is scratch space that is kept.
   void multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const;
 
   /// The entries of H between these places of one leaf's neighbourhood: 3 #places squared, degrees of freedom in the
@@ -67,12 +67,17 @@ class CompressedMatrix {
   static constexpr int components = 3;
 
   void plan(const NestedBases& bases);
+  void plan_upwards(const std::vector<WorkRange>& columns);
+  void plan_downwards(const std::vector<WorkRange>& columns, const std::vector<WorkRange>& rows);
+  void plan_leaves(const std::vector<WorkRange>& rows, Index out);
+  /// Its number; `bytes` grows by what it takes.
+  std::int32_t add_row(WorkRange out, std::vector<WorkRange> sources, std::size_t& bytes);
   void fill_bases(const NestedBases& bases);
   void fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
   void fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress);
   void fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf);
   void set_diagonal();
-  /// Where the leaf's own columns begin in its near block row.
+  /// Where the neighbour's columns begin in the leaf's block row; -1 where it is none.
   Index near_column(std::int32_t leaf, std::int32_t neighbour) const;
 
   ClusterTree tree_;

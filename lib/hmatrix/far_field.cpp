@@ -64,7 +64,7 @@ void add_thinned(const FarSamples& from, std::size_t count, FarSamples& to) {
 template <class Kernel>
 PointKernel<Kernel>::PointKernel(const TriangleMesh& mesh, const ClusterTree& tree, const Kernel& kernel)
     : kernel_(kernel) {
-  const double scale = std::exp2(-std::ceil(std::log2(diagonal(mesh))));
+  const double scale = unit_scale(mesh);
   for (const std::int32_t vertex : tree.order()) vertices_.push_back(mesh.vertices.row(vertex).transpose() * scale);
   for (Index t = 0; t < mesh.triangle_count(); ++t) {
     centroids_.push_back((mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3 * scale);

@@ -24,21 +24,6 @@ MatrixMap scratch(Use use, Index rows, Index columns) {
   return {numbers.data(), rows, columns};
 }
 
-/// The points of some degrees of freedom, each once, and where in that list each one's point is.
-struct PointList {
-  std::vector<std::int32_t> points;
-  std::vector<std::size_t> of_dof;
-
-  explicit PointList(const std::vector<Dof>& dofs) {
-    for (const Dof& dof : dofs) points.push_back(dof.point);
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    for (const Dof& dof : dofs) {
-      of_dof.push_back(std::lower_bound(points.begin(), points.end(), dof.point) - points.begin());
-    }
-  }
-};
-
 /// Builds one cluster's bases. A matrix's rows are the equations of the samples, weighted.
 template <class Kernel>
 class BasisMaker {
@@ -120,8 +105,7 @@ class BasisMaker {
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(panels * Index(kPanel) * components, weights.cols());
     for (Index v = 0; v < leaf.size(); ++v) {
       for (int i = 0; i < components; ++i) {
-        result.row((v / Index(kPanel) * components + i) * Index(kPanel) + v % Index(kPanel)) =
-            weights.row(components * v + i);
+        result.row(tree_row(v, i, components)) = weights.row(components * v + i);
       }
     }
     return result;
@@ -195,6 +179,15 @@ class BasisMaker {
 };
 
 }  // namespace
+
+PointList::PointList(const std::vector<Dof>& dofs) {
+  for (const Dof& dof : dofs) points.push_back(dof.point);
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  for (const Dof& dof : dofs) {
+    of_dof.push_back(std::lower_bound(points.begin(), points.end(), dof.point) - points.begin());
+  }
+}
 
 ColumnSelection select_columns(const Eigen::Ref<const Eigen::MatrixXd>& gram, double tolerance) {
   const Index rows = gram.rows(), n = gram.cols();

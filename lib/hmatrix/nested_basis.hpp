@@ -15,6 +15,14 @@ struct Dof {
   std::int32_t component;
 };
 
+/// The points of some degrees of freedom, each once, and where in that list each one's point is.
+struct PointList {
+  std::vector<std::int32_t> points;
+  std::vector<std::size_t> of_dof;
+
+  explicit PointList(const std::vector<Dof>& dofs);
+};
+
 /// What a cluster shows to its far field: of its candidates it keeps a skeleton, from which its degrees of freedom
 /// follow. Rows: candidates are a leaf's vertices. Columns: dipoles of the triangles around them. Above the leaves:
 /// what the two children kept.

@@ -22,7 +22,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// So many columns of a tile are used for all right-hand sides before the next are read: they stay in the first-level
 /// cache.
 constexpr std::size_t kDepth = 96;
-constexpr std::size_t kMostColumns = 64;
 /// Columns of the result that are summed at once, beside three vectors of rows: as registers allow.
 constexpr std::size_t kColumns = HWY_TARGET <= HWY_AVX3 ? 6 : 4;
 

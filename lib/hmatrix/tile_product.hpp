@@ -13,6 +13,9 @@ namespace skinbem {
 inline constexpr std::size_t kTile = 48;
 inline constexpr std::size_t kTileStep = 16;
 
+/// Right-hand sides at once.
+inline constexpr std::size_t kMostColumns = 48;
+
 /// #length consecutive rows of a row-major matrix of right-hand sides.
 template <class T>
 struct RowRange {
@@ -21,8 +24,8 @@ struct RowRange {
 };
 
 /// One tile times stacked right-hand sides: `tile` is height by (sum of the ranges' lengths), the result (height by
-/// #columns, row-major, adjacent) is written to `out`. Sums run in the order of storage, so the result does not depend
-/// on who calls.
+/// #columns, row-major, adjacent) is written to `out`; at most kMostColumns columns. Sums run in the order of storage,
+/// so the result does not depend on who calls.
 void multiply_tile(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
                    float* out);
 void multiply_tile(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges,

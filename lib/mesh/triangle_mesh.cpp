@@ -2,6 +2,7 @@
 #include <skinbem/mesh/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace skinbem {
 
@@ -22,6 +23,8 @@ double diagonal(const TriangleMesh& mesh) {
   if (mesh.vertex_count() == 0) return 0;
   return (mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff()).norm();
 }
+
+double unit_scale(const TriangleMesh& mesh) { return std::exp2(-std::ceil(std::log2(diagonal(mesh)))); }
 
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh) {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.vertex_count());

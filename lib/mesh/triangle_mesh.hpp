@@ -25,6 +25,8 @@ double volume(const TriangleMesh& mesh);
 Vec3 area_vector(const TriangleMesh& mesh, Index t);
 /// Length of the bounding box's diagonal: "the size" of the mesh wherever a tolerance is relative to it.
 double diagonal(const TriangleMesh& mesh);
+/// The power of two, so that scaling is exact, that brings the diagonal between 1/2 and 1.
+double unit_scale(const TriangleMesh& mesh);
 /// #V: a third of the area of the triangles around each vertex.
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
 

@@ -85,8 +85,6 @@ inline std::vector<std::int32_t> morton_order(const std::vector<Eigen::Vector3d>
   return order;
 }
 
-inline double power_of_two_scale(const TriangleMesh& mesh) { return std::exp2(-std::ceil(std::log2(diagonal(mesh)))); }
-
 template <class Block>
 void add_block(const Block& block, double* out) {
   for (Eigen::Index e = 0; e < Block::SizeAtCompileTime; ++e) {
@@ -201,7 +199,7 @@ void Collocation<Kernel>::for_each_panel(const Progress& progress, std::string_v
 template <class Kernel>
 Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options)
     : triangles_of_vertex_(triangles_around_vertices(mesh)),
-      scale_(detail::power_of_two_scale(mesh)),
+      scale_(unit_scale(mesh)),
       integral_(kernel, std::max(smallest_tolerance, options.tolerance / 2)),
       precision_(options.tolerance >= 1e-5 ? Precision::float32 : Precision::float64) {
   vertices_.resize(mesh.vertex_count());

@@ -64,7 +64,9 @@ class CompressedSolver final : public NeumannSolver {
   }
 
  private:
+  /// Of a block of GMRES: more cost more for the basis than they save in iterations.
   static constexpr Index most_columns = 36;
+  static_assert(most_columns <= Index(kMostColumns));
 
   Eigen::MatrixXd solve_block(const Eigen::MatrixXd& G, GmresSummary& summary) const {
     typename CompressedMatrix<T>::Block work;

@@ -91,11 +91,6 @@ class Surroundings {
   std::vector<Eigen::Vector3d> vertices_, normals_;
 };
 
-/// Row of the tree's order.
-Index dof_row(std::int32_t place, int component) {
-  return (place / Index(kPanel) * components + component) * Index(kPanel) + place % Index(kPanel);
-}
-
 /// Those that belong to the vertices at these places.
 Eigen::MatrixXf rows_of(const Eigen::MatrixXd& B, const ClusterTree& tree, const std::vector<std::int32_t>& places) {
   Eigen::MatrixXf rows(components * Index(places.size()), B.cols());
@@ -135,16 +130,16 @@ bool SchwarzPreconditioner::invert(Eigen::MatrixXf entries, const Cluster& clust
   Eigen::MatrixXf rows = Eigen::MatrixXf::Identity(n, own);  // of the inverse, transposed
   if (!lapack::solve_transposed(entries, rows)) return false;
   const Index panels = (cluster.size() + Index(kPanel) - 1) / Index(kPanel);
-  leaf.first = dof_row(cluster.begin, 0);
+  leaf.first = tree_row(cluster.begin, 0, components);
   leaf.tiles = static_cast<std::size_t>(panels);
   for (const std::int32_t place : places) {
-    for (int i = 0; i < components; ++i) leaf.sources.push_back(dof_row(place, i));
+    for (int i = 0; i < components; ++i) leaf.sources.push_back(tree_row(place, i, components));
   }
   leaf.inverse.assign(leaf.tiles * kTile * leaf.sources.size(), 0.0f);
   for (Index k = 0; k < n; ++k) {
     for (Index place = 0; place < cluster.size(); ++place) {
       for (int i = 0; i < components; ++i) {
-        const Index row = dof_row(std::int32_t(place), i);
+        const Index row = tree_row(place, i, components);
         leaf.inverse[(row / Index(kTile) * n + k) * Index(kTile) + row % Index(kTile)] =
             rows(k, components * place + i);
       }

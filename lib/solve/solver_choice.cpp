@@ -29,7 +29,8 @@ SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, dou
   const double n = static_cast<double>(mesh.vertex_count());
   const IterativeOptions options = IterativeOptions::for_tolerance(tolerance, mesh.vertex_count());
   const double digits = -std::log10(tolerance);
-  const double seconds_per_vertex = 3e-5 * digits * digits;  // at two and more digits
+  // grows by a fifth of a power: iterations and levels (docs/scaling.md)
+  const double seconds_per_vertex = 3.6e-5 * digits * digits * std::pow(n / 1e4, 0.2);
   const double blocks_of_the_basis = 4 * digits, columns = 18;
   const double schwarz = 3 * n * 3 * 128 * 4;
   const double vectors = 3 * n * 8 * columns * (blocks_of_the_basis + 8);
@@ -77,9 +78,11 @@ SolverPrediction choose_solver(Solver wanted, const TriangleMesh& mesh, double t
     if (option.bytes <= limit) return option;
     needs += std::string(needs.empty() ? "" : ", ") + name_of(option.solver) + " " + gigabytes(option.bytes);
   }
-  throw Error(ErrorCode::usage, "not enough memory for " + std::to_string(mesh.vertex_count()) + " vertices: " + needs +
-                                    " needed, " + gigabytes(limit) +
-                                    " there are; allow more memory, a larger tolerance or take a coarser mesh");
+  throw Error(ErrorCode::usage,
+              "not enough memory for " + std::to_string(mesh.vertex_count()) + " vertices: " + needs + " needed, " +
+                  gigabytes(limit) + " there are; allow more memory, " +
+                  (wanted == Solver::dense ? "use the compressed solver (hmatrix)" : "a larger tolerance") +
+                  " or take a coarser mesh");
 }
 
 std::size_t available_memory() {

@@ -90,10 +90,9 @@ TEST_F(Response, JsonIsOneObjectWithTheKeysOfTheContract) {
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(lines(outcome.out), 1);
     const auto report = nlohmann::ordered_json::parse(outcome.out);
-    EXPECT_THAT(keys(report),
-                testing::ElementsAre("version", "mesh", "landmarks", "poisson", "solver", "tolerance",
-                                     "estimated_error", "residual", "iterations", "threads", "seconds", "peak_bytes",
-                                     "predicted"));
+    EXPECT_THAT(keys(report), testing::ElementsAre("version", "mesh", "landmarks", "poisson", "solver", "tolerance",
+                                                   "estimated_error", "residual", "iterations", "threads", "seconds",
+                                                   "peak_bytes", "predicted"));
     EXPECT_THAT(keys(report["mesh"]), testing::ElementsAre("vertices", "triangles", "volume"));
     EXPECT_THAT(keys(report["seconds"]), testing::ElementsAre("read", "assemble", "factor", "solve", "total"));
     EXPECT_EQ(report["mesh"]["vertices"], 18);

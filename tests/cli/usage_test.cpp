@@ -45,10 +45,9 @@ TEST_F(Usage, WrongCommandsAndOptionsAreNamedWithCode2) {
 
 TEST_F(Usage, ValuesOutOfRangeAreNamedWithCode2AndWriteNothing) {
   const std::vector<std::pair<const char*, const char*>> wrong{
-      {"--poisson", "0.7"},    {"--poisson", "-1"},    {"--poisson", "nan"},   {"--poisson", "abc"},
-      {"--tolerance", "0"},    {"--tolerance", "1"},   {"--tolerance", "nan"}, {"--radius", "-1"},
-      {"--radius", "inf"},     {"--threads", "-1"},    {"--threads", "1.5"},   {"--threads", "100000"},
-      {"--solver", "direct"},  {"--memory", "-1"},     {"--memory", "1e-6"},
+      {"--poisson", "0.7"}, {"--poisson", "-1"},     {"--poisson", "nan"},   {"--poisson", "abc"}, {"--tolerance", "0"},
+      {"--tolerance", "1"}, {"--tolerance", "nan"},  {"--radius", "-1"},     {"--radius", "inf"},  {"--threads", "-1"},
+      {"--threads", "1.5"}, {"--threads", "100000"}, {"--solver", "direct"}, {"--memory", "-1"},   {"--memory", "1e-6"},
   };
   for (const auto& [option, value] : wrong) {
     const Outcome outcome = run(Arguments{"response"} + box() + Arguments{"-o", path("R.npy"), option, value});

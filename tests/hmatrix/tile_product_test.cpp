@@ -49,7 +49,7 @@ TYPED_TEST_SUITE(TileProduct, Numbers);
 
 TYPED_TEST(TileProduct, EqualsEigensForEveryHeightAndNumberOfColumns) {
   for (const Index height : {16, 32, 48}) {
-    for (Index columns = 1; columns <= BlockRows<float>::most_columns; ++columns) {
+    for (Index columns = 1; columns <= Index(kMostColumns); ++columns) {
       this->expect_eigens(height, columns, {48, 5, 101});
     }
   }
