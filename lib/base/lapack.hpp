@@ -57,35 +57,11 @@ inline bool solve_transposed(Eigen::MatrixXf& A, Eigen::MatrixXf& B) {
   return true;
 }
 
-/// LU with partial pivoting of a square matrix stored by rows (LAPACK factorises what it sees as the transpose).
-template <class T>
-class Lu {
- public:
-  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-  using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  /// Throws Error(numerical) when a pivot is exactly zero.
-  explicit Lu(RowMajor A) : A_(std::move(A)), pivots_(static_cast<std::size_t>(A_.rows())) {
-    const int n = static_cast<int>(A_.rows());
-    if (getrf(&n, A_.data(), pivots_.data()) != 0) {
-      throw Error(ErrorCode::numerical, "the boundary element matrix is singular; check the mesh and Poisson's ratio");
-    }
-  }
-  Matrix solve(Matrix B) const {
-    const int n = static_cast<int>(A_.rows()), columns = static_cast<int>(B.cols());
-    getrs(&n, &columns, A_.data(), pivots_.data(), B.data());
-    return B;
-  }
-
- private:
-  RowMajor A_;
-  std::vector<int> pivots_;
-};
-
-/// C = alpha A B + beta C, A stored by rows.
-inline void gemm(const RowMajorMatrix& A, const Eigen::MatrixXd& B, double alpha, double beta, Eigen::MatrixXd& C) {
+/// C += alpha A B, A stored by rows.
+inline void add_product(double alpha, const RowMajorMatrix& A, const Eigen::MatrixXd& B, Eigen::MatrixXd& C) {
   const int m = static_cast<int>(A.rows()), n = static_cast<int>(B.cols()), k = static_cast<int>(A.cols());
-  dgemm_("T", "N", &m, &n, &k, &alpha, A.data(), &k, B.data(), &k, &beta, C.data(), &m);
+  const double one = 1;
+  dgemm_("T", "N", &m, &n, &k, &alpha, A.data(), &k, B.data(), &k, &one, C.data(), &m);
 }
 
 /// C = V^T W, all stored by rows; V and W have `rows` of them.

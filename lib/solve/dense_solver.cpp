@@ -4,7 +4,7 @@
 #include <optional>
 #include <sstream>
 
-#include <skinbem/base/lapack.hpp>
+#include <skinbem/solve/lu.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 
 namespace skinbem {
@@ -43,7 +43,7 @@ class DenseSolver final : public NeumannSolver {
 
   Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const override {
     Eigen::MatrixXd result = -B_ * (B_.transpose() * V);
-    lapack::gemm(A_, V, 1, 1, result);
+    add_product(1, V, result);
     return result;
   }
 
@@ -61,7 +61,7 @@ class DenseSolver final : public NeumannSolver {
     constexpr int most_steps = 20;
     for (ended.iterations = 0;; ++ended.iterations) {
       Eigen::MatrixXd r = g;
-      lapack::gemm(A_, Y, -1, 1, r);
+      add_product(-1, Y, r);
       const double residual = r.colwise().norm().maxCoeff();
       if (!(residual < ended.residual)) {  // the last step made it worse
         Y -= step;
@@ -76,11 +76,22 @@ class DenseSolver final : public NeumannSolver {
     return Y.array().rowwise() * size.array();
   }
 
+  /// result += alpha A V.
+  void add_product(double alpha, const Eigen::MatrixXd& V, Eigen::MatrixXd& result) const {
+    if (V.cols() > few_columns) return lapack::add_product(alpha, A_, V, result);
+    constexpr Index band = 64;
+#pragma omp parallel for schedule(static)
+    for (Index first = 0; first < A_.rows(); first += band) {
+      const Index rows = std::min(band, A_.rows() - first);
+      add_row_product<double>(alpha, A_.middleRows(first, rows), V, result.middleRows(first, rows));
+    }
+  }
+
   RowMajorMatrix A_;  ///< H + B B^T
   Eigen::MatrixXd B_;
   double tolerance_;
-  std::optional<lapack::Lu<float>> single_;
-  mutable std::optional<lapack::Lu<double>> double_;
+  std::optional<Lu<float>> single_;
+  mutable std::optional<Lu<double>> double_;
   mutable std::once_flag double_made_;
 };
 
