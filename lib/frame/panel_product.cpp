@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "skinbem/frame/panel_product.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes first
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -81,7 +82,10 @@ struct QuantisedColumns {
   QuantisedColumns(const std::byte* panel, std::size_t entries)
       : which(reinterpret_cast<const std::uint32_t*>(panel + kRestBytes)),
         scale(reinterpret_cast<const float*>(which + entries)),
-        column(reinterpret_cast<const std::int32_t*>(panel + kRestBytes + entry_list_bytes(entries))) {}
+        column(reinterpret_cast<const std::int32_t*>(panel + kRestBytes + entry_list_bytes(entries))) {
+    // read beside the columns later on, the list would interrupt their stream, line by line
+    for (std::size_t line = 0; line < entry_list_bytes(entries); line += 64) hwy::Prefetch(panel + kRestBytes + line);
+  }
   float weight(const FrameFactors& frame, std::size_t entry) const {
     return scale[entry] * frame.weights[which[entry]];
   }
