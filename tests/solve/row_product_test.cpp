@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <Eigen/LU>
 #include <skinbem/solve/lu.hpp>
@@ -51,6 +52,20 @@ TYPED_TEST(RowProduct, LuSolvesFewAndManyColumnsAlike) {
       EXPECT_LE((lu.solve(many.leftCols(columns)) - solved.leftCols(columns)).norm(), allowed * solved.norm()) << n;
     }
   }
+}
+
+TYPED_TEST(RowProduct, LuSolvesFewColumnsToTheSameBitsForAnyNumberOfThreads) {
+  using T = TypeParam;
+  const Lu<T> lu(Rows<T>::Random(100, 100) + T(10) * Rows<T>::Identity(100, 100));
+  const Columns<T> B = Columns<T>::Random(100, few_columns);
+  const int threads = omp_get_max_threads();
+  Columns<T> solved[2];
+  for (int k = 0; k < 2; ++k) {
+    omp_set_num_threads(k + 1);
+    solved[k] = lu.solve(B);
+  }
+  omp_set_num_threads(threads);
+  EXPECT_EQ(solved[0], solved[1]);
 }
 
 }  // namespace
