@@ -91,6 +91,8 @@ inline constexpr double program_response = 1e-10;
 inline constexpr double tile_product_f32 = 1e-6;
 /// The compressed matrix's numbers and sums in single precision, of columns of size 1.
 inline constexpr double compressed_f32 = 2e-6;
+/// The same of numbers in 16 bits: a step is 1/32767 of a column's largest number.
+inline constexpr double compressed_packed = 2e-5;
 /// What compression reaches, whatever is asked: normal equations.
 inline constexpr double compression = 3e-6;
 /// Residual of the dense matrix after a solve with the compressed one, in residuals asked for: a slab of 1:25 bends a

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <skinbem/hmatrix/block_rows.hpp>
 
+#include <algorithm>
+
 namespace skinbem {
 namespace {
 
-template <class T>
-void multiply_row(const BlockRow& row, const T* numbers, typename BlockRows<T>::Block& work) {
-  thread_local std::vector<RowRange<T>> ranges;
-  ranges.clear();
-  for (const WorkRange& source : row.sources) {
-    ranges.push_back({work.data() + source.first * work.cols(), static_cast<std::size_t>(source.length)});
-  }
-  for (Index first = 0; first < row.out.length; first += Index(kTile)) {
-    const Index height = std::min(Index(kTile), row.out.length - first);
-    multiply_tile(numbers + row.offset + first * row.width, static_cast<std::size_t>(height),
-                  std::span<const RowRange<T>>(ranges), static_cast<std::size_t>(work.cols()),
-                  work.data() + (row.out.first + first) * work.cols());
-  }
+constexpr Index tile_height = Index(kTile);
+
+/// Rows of the tile that begins with row `first`.
+Index height_of(const BlockRow& row, Index first) { return std::min(tile_height, row.out.length - first); }
+
+/// Where the numbers of a tile's column begin, and its scale.
+std::size_t column_offset(const BlockRow& row, Index first, Index k) {
+  return row.offset + static_cast<std::size_t>(first * row.width + k * height_of(row, first));
+}
+std::size_t scale_index(const BlockRow& row, Index first, Index k) {
+  return row.scale_offset + static_cast<std::size_t>(first / tile_height * row.width + k);
 }
 
 }  // namespace
 
 template <class T>
-std::size_t BlockRows<T>::add(WorkRange out, std::vector<WorkRange> sources) {
-  BlockRow row{out, std::move(sources)};
+std::size_t BlockRows<T>::add(WorkRange out, std::vector<WorkRange> sources, bool packed) {
+  BlockRow row{out, std::move(sources), packed && std::is_same_v<T, float>};
   for (const WorkRange& source : row.sources) row.width += source.length;
   rows_.push_back(std::move(row));
   return rows_.size() - 1;
@@ -31,12 +31,64 @@ std::size_t BlockRows<T>::add(WorkRange out, std::vector<WorkRange> sources) {
 
 template <class T>
 void BlockRows<T>::allocate() {
-  std::size_t total = 0;
+  std::size_t total[2] = {0, 0}, scales = 0;
   for (BlockRow& row : rows_) {
-    row.offset = total;
-    total += row.numbers();
+    row.offset = total[row.packed];
+    row.scale_offset = scales;
+    total[row.packed] += row.numbers();
+    scales += row.scales();
   }
-  numbers_ = detail::Uninitialised<T>(total);
+  numbers_ = detail::Uninitialised<T>(total[false]);
+  packed_ = detail::Uninitialised<std::int16_t>(total[true]);
+  scales_ = detail::Uninitialised<float>(scales);
+}
+
+template <class T>
+void BlockRows<T>::set_column(std::size_t row, Index first, Index k, const T* values) {
+  const BlockRow& b = rows_[row];
+  const std::size_t height = static_cast<std::size_t>(height_of(b, first)), offset = column_offset(b, first, k);
+  if constexpr (std::is_same_v<T, float>) {
+    if (b.packed) {
+      scales_.data()[scale_index(b, first, k)] = pack_column(values, height, packed_.data() + offset);
+      return;
+    }
+  }
+  std::copy_n(values, height, numbers_.data() + offset);
+}
+
+template <class T>
+void BlockRows<T>::get_column(std::size_t row, Index first, Index k, T* values) const {
+  const BlockRow& b = rows_[row];
+  const std::size_t height = static_cast<std::size_t>(height_of(b, first)), offset = column_offset(b, first, k);
+  if (!b.packed) {
+    std::copy_n(numbers_.data() + offset, height, values);
+    return;
+  }
+  const T scale = T(scales_.data()[scale_index(b, first, k)]);
+  for (std::size_t r = 0; r < height; ++r) values[r] = packed_.data()[offset + r] * scale;
+}
+
+template <class T>
+void BlockRows<T>::multiply_row(const BlockRow& row, Block& work) const {
+  thread_local std::vector<RowRange<T>> ranges;
+  ranges.clear();
+  for (const WorkRange& source : row.sources) {
+    ranges.push_back({work.data() + source.first * work.cols(), static_cast<std::size_t>(source.length)});
+  }
+  const std::span<const RowRange<T>> sources = ranges;
+  const std::size_t columns = static_cast<std::size_t>(work.cols());
+  for (Index first = 0; first < row.out.length; first += tile_height) {
+    const std::size_t height = static_cast<std::size_t>(height_of(row, first)), offset = column_offset(row, first, 0);
+    T* out = work.data() + (row.out.first + first) * work.cols();
+    if constexpr (std::is_same_v<T, float>) {
+      if (row.packed) {
+        const PackedTile tile{packed_.data() + offset, scales_.data() + scale_index(row, first, 0)};
+        multiply_tile(tile, height, sources, columns, out);
+        continue;
+      }
+    }
+    multiply_tile(numbers_.data() + offset, height, sources, columns, out);
+  }
 }
 
 template <class T>
@@ -45,8 +97,20 @@ void BlockRows<T>::run(Block& work) const {
   for (std::size_t s = 0; s < stages_.size(); ++s) {
     const std::size_t last = s + 1 < stages_.size() ? stages_[s + 1] : rows_.size();
 #pragma omp for schedule(dynamic, 1)
-    for (std::size_t k = stages_[s]; k < last; ++k) multiply_row(rows_[k], numbers_.data(), work);
+    for (std::size_t k = stages_[s]; k < last; ++k) multiply_row(rows_[k], work);
   }
+}
+
+template <class T>
+std::size_t BlockRows<T>::bytes(const BlockRow& row) {
+  return row.packed ? row.numbers() * sizeof(std::int16_t) + row.scales() * sizeof(float) : row.numbers() * sizeof(T);
+}
+
+template <class T>
+std::size_t BlockRows<T>::bytes() const {
+  std::size_t sum = 0;
+  for (const BlockRow& row : rows_) sum += bytes(row);
+  return sum;
 }
 
 template class BlockRows<float>;

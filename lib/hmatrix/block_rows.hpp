@@ -23,10 +23,15 @@ struct WorkRange {
 struct BlockRow {
   WorkRange out;  ///< the length a multiple of kTileStep
   std::vector<WorkRange> sources;
-  Index width = 0;  ///< sum of the sources' lengths
-  std::size_t offset = 0;
+  bool packed = false;           ///< numbers in 16 bits (PackedTile)
+  Index width = 0;               ///< sum of the sources' lengths
+  std::size_t offset = 0;        ///< of its numbers among those of its kind
+  std::size_t scale_offset = 0;  ///< of its tiles' scales, where it is packed
 
   std::size_t numbers() const { return static_cast<std::size_t>(out.length * width); }
+  std::size_t scales() const {
+    return packed ? static_cast<std::size_t>((out.length + Index(kTile) - 1) / Index(kTile) * width) : 0;
+  }
 };
 
 /// Rows of one stage do not depend on each other and are computed in parallel; each stage reads what earlier ones
@@ -38,33 +43,33 @@ class BlockRows {
 
   /// Rows that are added from now on belong to a new stage.
   void begin_stage() { stages_.push_back(rows_.size()); }
-  /// Its number.
-  std::size_t add(WorkRange out, std::vector<WorkRange> sources);
+  /// Its number. Numbers in double are never packed.
+  std::size_t add(WorkRange out, std::vector<WorkRange> sources, bool packed = false);
   /// After the last row: storage for the numbers of all of them, not initialised.
   void allocate();
 
   const BlockRow& row(std::size_t k) const { return rows_[k]; }
-  /// Column k of the tile that holds row `r` of the block row; the tile's numbers of that column are adjacent.
-  T* tile_column(std::size_t row, Index r, Index k) {
-    const BlockRow& b = rows_[row];
-    const Index tile = r / Index(kTile), first = tile * Index(kTile);
-    return numbers_.data() + b.offset + first * b.width + k * std::min(Index(kTile), b.out.length - first);
-  }
-  const T* tile_column(std::size_t row, Index r, Index k) const {
-    return const_cast<BlockRows*>(this)->tile_column(row, r, k);
-  }
+  /// Column k of the tile that begins with row `first` of the block row: as many values as the tile has rows.
+  void set_column(std::size_t row, Index first, Index k, const T* values);
+  void get_column(std::size_t row, Index first, Index k, T* values) const;
 
   /// Runs the schedule over a workspace (rows by at most kMostColumns, row-major). The same bits for any number of
   /// threads.
   void run(Block& work) const;
 
   std::size_t size() const { return rows_.size(); }
-  std::size_t bytes() const { return numbers_.size() * sizeof(T); }
+  std::size_t bytes() const;
+  /// Of one row.
+  static std::size_t bytes(const BlockRow& row);
 
  private:
+  void multiply_row(const BlockRow& row, Block& work) const;
+
   std::vector<BlockRow> rows_;
   std::vector<std::size_t> stages_;  ///< first row of each
   detail::Uninitialised<T> numbers_;
+  detail::Uninitialised<std::int16_t> packed_;
+  detail::Uninitialised<float> scales_;
 };
 
 extern template class BlockRows<float>;

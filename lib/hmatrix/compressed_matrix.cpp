@@ -10,7 +10,8 @@
 namespace skinbem {
 namespace {
 
-constexpr double bases_share = 0.6;  ///< of the time
+constexpr double bases_share = 0.6;                                        ///< of the time
+constexpr std::int32_t most_packed_vertices = 3 * ClusterTree::leaf_size;  ///< of a cluster
 
 Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
 
@@ -30,7 +31,11 @@ std::vector<PointList> points_of(const std::vector<ClusterBasis>& bases) {
 template <class T>
 CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
                                       const CompressionOptions& options, const Progress& progress)
-    : tree_(mesh), partition_(tree_, options.eta), rows_(round_up(mesh.vertex_count(), kPanel) * components) {
+    : tree_(mesh),
+      partition_(tree_, options.eta),
+      rows_(round_up(mesh.vertex_count(), kPanel) * components),
+      packed_(options.packed),
+      diagonal_(mesh.vertex_count(), Eigen::Matrix3d::Zero()) {
   leaf_of_place_.resize(mesh.vertex_count());
   for (const std::int32_t leaf : tree_.leaves()) {
     std::fill(leaf_of_place_.begin() + tree_.clusters()[leaf].begin,
@@ -82,9 +87,12 @@ void CompressedMatrix<T>::plan(const NestedBases& bases) {
 }
 
 template <class T>
-std::int32_t CompressedMatrix<T>::add_row(WorkRange out, std::vector<WorkRange> sources, std::size_t& bytes) {
-  const std::size_t row = schedule_.add({out.first, round_up(out.length, kTileStep)}, std::move(sources));
-  bytes += schedule_.row(row).numbers() * sizeof(T);
+std::int32_t CompressedMatrix<T>::add_row(WorkRange out, std::vector<WorkRange> sources, const Cluster& cluster,
+                                          std::size_t& bytes) {
+  const WorkRange filled{out.first, round_up(out.length, kTileStep)};
+  const bool packed = packed_ && cluster.size() <= most_packed_vertices;
+  const std::size_t row = schedule_.add(filled, std::move(sources), packed);
+  bytes += BlockRows<T>::bytes(schedule_.row(row));
   return std::int32_t(row);
 }
 
@@ -103,7 +111,7 @@ void CompressedMatrix<T>::plan_upwards(const std::vector<WorkRange>& columns) {
       } else {
         for (const std::int32_t child : cluster.children) sources.push_back(columns[child]);
       }
-      up_[c] = add_row(columns[c], std::move(sources), summary_.basis_bytes);
+      up_[c] = add_row(columns[c], std::move(sources), cluster, summary_.basis_bytes);
     }
   }
 }
@@ -120,7 +128,7 @@ void CompressedMatrix<T>::plan_downwards(const std::vector<WorkRange>& columns, 
       for (const std::int32_t partner : partition_.far[c]) sources.push_back(columns[partner]);
       const std::int32_t parent = tree_.clusters()[c].parent;
       if (parent >= 0 && rows[parent].length > 0) sources.push_back(rows[parent]);
-      coupling_[c] = add_row(rows[c], std::move(sources), summary_.coupling_bytes);
+      coupling_[c] = add_row(rows[c], std::move(sources), tree_.clusters()[c], summary_.coupling_bytes);
     }
   }
 }
@@ -136,8 +144,9 @@ void CompressedMatrix<T>::plan_leaves(const std::vector<WorkRange>& rows, Index 
       sources.push_back(dofs_of(tree_.clusters()[neighbour], components));
     }
     if (rows[leaf].length > 0) sources.push_back(rows[leaf]);
-    const WorkRange dofs = dofs_of(tree_.clusters()[leaf], components);
-    out_[leaf] = add_row({out + dofs.first, dofs.length}, std::move(sources), summary_.near_bytes);
+    const Cluster& cluster = tree_.clusters()[leaf];
+    const WorkRange dofs = dofs_of(cluster, components);
+    out_[leaf] = add_row({out + dofs.first, dofs.length}, std::move(sources), cluster, summary_.near_bytes);
   }
 }
 
@@ -150,8 +159,9 @@ void fill(BlockRows<T>& schedule, std::int32_t block_row, Index first, Index row
   for (Index tile = 0; tile < height; tile += Index(kTile)) {
     const Index last = std::min(height, tile + Index(kTile));
     for (Index k = 0; k < columns; ++k) {
-      T* numbers = schedule.tile_column(block_row, tile, first + k);
-      for (Index r = tile; r < last; ++r) *numbers++ = r < rows ? T(value(r, k)) : T(0);
+      T numbers[kTile];
+      for (Index r = tile; r < last; ++r) numbers[r - tile] = r < rows ? T(value(r, k)) : T(0);
+      schedule.set_column(block_row, tile, first + k, numbers);
     }
   }
 }
@@ -229,6 +239,7 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
     return std::span(tree_.order()).subspan(begin, end - begin);
   };
   const auto& near = partition_.near[leaf];
+  constexpr T zeros[kTile] = {};
   constexpr std::size_t together = 4;  // leaves at once: their triangles overlap, their entries stay in the cache
   Index first_column = 0;
   for (std::size_t first = 0; first < near.size(); first += together) {
@@ -244,7 +255,7 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
       const bool full = neighbour.size() % std::int32_t(kPanel) == 0;
       for (Index k = full ? dofs.length : dofs.length - components * Index(kPanel); k < dofs.length; ++k) {
         for (Index r = 0; r < dofs_of(cluster, components).length; r += Index(kTile)) {
-          std::fill_n(schedule_.tile_column(out_[leaf], r, first_column + k), kTile, T(0));
+          schedule_.set_column(out_[leaf], r, first_column + k, zeros);
         }
       }
       first_column += dofs.length;
@@ -253,11 +264,12 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
         vertices(cluster.begin, cluster.end), columns, [&](std::size_t row, std::size_t, const double* entries) {
           for (std::size_t c = 0; c < columns.size(); ++c) {
             for (int j = 0; j < components; ++j) {
-              T* to = schedule_.tile_column(out_[leaf], Index(row) * components, place[c] + j * Index(kPanel));
+              T numbers[kTile];
               for (int i = 0; i < components; ++i) {
                 const double* from = entries + (c * components * components + components * i + j) * kPanel;
-                for (std::size_t p = 0; p < kPanel; ++p) to[i * kPanel + p] = T(from[p]);
+                for (std::size_t p = 0; p < kPanel; ++p) numbers[i * kPanel + p] = T(from[p]);
               }
+              schedule_.set_column(out_[leaf], Index(row) * components, place[c] + j * Index(kPanel), numbers);
             }
           }
         });
@@ -286,18 +298,8 @@ void CompressedMatrix<T>::set_diagonal() {
   VectorBlock sums;
   Block work;
   multiply(to_tree(ones), sums, work);
-  for (const std::int32_t leaf : tree_.leaves()) {
-    const Cluster& cluster = tree_.clusters()[leaf];
-    const Index own = near_column(leaf, leaf);
-    for (std::int32_t place = cluster.begin; place < cluster.end; ++place) {
-      for (int i = 0; i < components; ++i) {
-        for (int j = 0; j < components; ++j) {
-          const Index row = tree_row(place - cluster.begin, i, components);
-          T* column = schedule_.tile_column(out_[leaf], row, own + tree_row(place - cluster.begin, j, components));
-          column[row % Index(kTile)] = T(-sums(tree_row(place, i, components), j));
-        }
-      }
-    }
+  for (std::size_t place = 0; place < diagonal_.size(); ++place) {
+    for (int i = 0; i < components; ++i) diagonal_[place].row(i) = -sums.row(tree_row(Index(place), i, components));
   }
 }
 
@@ -326,9 +328,25 @@ Eigen::MatrixXd CompressedMatrix<T>::from_tree(const VectorBlock& vectors) const
 template <class T>
 void CompressedMatrix<T>::multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const {
   if (work.rows() != work_rows_ || work.cols() != X.cols()) work.resize(work_rows_, X.cols());
-  work.topRows(rows_) = X.template cast<T>();
+  Y.resize(rows_, X.cols());
+  const Index places = Index(diagonal_.size()), panel_rows = components * Index(kPanel);
+#pragma omp parallel for schedule(static)
+  for (Index row = 0; row < rows_; row += panel_rows) {
+    work.middleRows(row, panel_rows) = X.middleRows(row, panel_rows).template cast<T>();
+  }
   schedule_.run(work);
-  Y = work.bottomRows(rows_).template cast<double>();
+#pragma omp parallel for schedule(static)
+  for (Index first = 0; first < places; first += Index(kPanel)) {
+    const Index row = first * components;
+    Y.middleRows(row, panel_rows) = work.middleRows(work_rows_ - rows_ + row, panel_rows).template cast<double>();
+    for (Index place = first; place < std::min(places, first + Index(kPanel)); ++place) {
+      for (int i = 0; i < components; ++i) {
+        for (int j = 0; j < components; ++j) {
+          Y.row(tree_row(place, i, components)) += diagonal_[place](i, j) * X.row(tree_row(place, j, components));
+        }
+      }
+    }
+  }
 }
 
 template <class T>
@@ -337,25 +355,25 @@ Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t
   Eigen::MatrixXf entries = Eigen::MatrixXf::Zero(components * n, components * n);
   for (Index c = 0; c < n; ++c) {
     const std::int32_t column_leaf = leaf_of_place_[places[c]];
-    std::int32_t row_leaf = -1;
-    Index first = -1;
-    for (Index r = 0; r < n; ++r) {
-      if (leaf_of_place_[places[r]] != row_leaf) {
-        row_leaf = leaf_of_place_[places[r]];
-        first = near_column(row_leaf, column_leaf);
-      }
+    const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
+    for (Index r = 0, next; r < n; r = next) {  // rows of one tile at once
+      const std::int32_t panel = places[r] / std::int32_t(kPanel), row_leaf = leaf_of_place_[places[r]];
+      for (next = r + 1; next < n && places[next] / std::int32_t(kPanel) == panel;) ++next;
+      const Index first = near_column(row_leaf, column_leaf);
       if (first < 0) continue;
-      const std::int32_t row_place = places[r] - tree_.clusters()[row_leaf].begin;
-      const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
+      const Index tile = tree_row(panel * std::int32_t(kPanel) - tree_.clusters()[row_leaf].begin, 0, components);
       for (int j = 0; j < components; ++j) {
-        const T* column = schedule_.tile_column(out_[row_leaf], tree_row(row_place, 0, components),
-                                                first + tree_row(column_place, j, components));
-        for (int i = 0; i < components; ++i) {
-          entries(components * r + i, components * c + j) =
-              float(column[i * Index(kPanel) + row_place % Index(kPanel)]);
+        T numbers[kTile];
+        schedule_.get_column(out_[row_leaf], tile, first + tree_row(column_place, j, components), numbers);
+        for (Index k = r; k < next; ++k) {
+          for (int i = 0; i < components; ++i) {
+            entries(components * k + i, components * c + j) =
+                float(numbers[i * Index(kPanel) + places[k] % Index(kPanel)]);
+          }
         }
       }
     }
+    entries.block<components, components>(components * c, components * c) += diagonal_[places[c]].cast<float>();
   }
   return entries;
 }
@@ -368,14 +386,17 @@ std::size_t predict_compressed_bytes(const TriangleMesh& mesh, const Compression
   constexpr double components = 3;
   // mean ranks of the leg at 1e-3, 1e-4, 1e-5: 45, 74, 88
   const double rank = std::clamp(12 - 15 * std::log10(options.tolerance), 16.0, components * ClusterTree::leaf_size);
-  double numbers = 0;
+  double bytes = 0;
   for (std::size_t c = 0; c < tree.clusters().size(); ++c) {
-    const double dofs = components * tree.clusters()[c].size();
+    const Cluster& cluster = tree.clusters()[c];
+    const double dofs = components * cluster.size();
+    double numbers = double(partition.far[c].size()) * rank * rank;
     for (const std::int32_t other : partition.near[c]) numbers += dofs * components * tree.clusters()[other].size();
-    numbers += double(partition.far[c].size()) * rank * rank;
-    if (has_far_field[c]) numbers += 2 * rank * (tree.clusters()[c].is_leaf() ? dofs : 2 * rank);
+    if (has_far_field[c]) numbers += 2 * rank * (cluster.is_leaf() ? dofs : 2 * rank);
+    const bool packed = options.packed && number_bytes == sizeof(float) && cluster.size() <= most_packed_vertices;
+    bytes += numbers * (packed ? sizeof(std::int16_t) + sizeof(float) / double(kTile) : double(number_bytes));
   }
-  return static_cast<std::size_t>(numbers * double(number_bytes));
+  return static_cast<std::size_t>(bytes);
 }
 
 template class CompressedMatrix<float>;

@@ -20,6 +20,9 @@ struct CompressionOptions {
   double eta = 1.5;
   /// Vertices of a cluster's far field that its bases are made from.
   Index samples = 192;
+  /// Blocks of clusters of some leaves' vertices are stored in 16 bits, where the others are in single precision: half
+  /// the memory. Their rounding errors differ from vertex to vertex and even out; those of larger clusters would not.
+  bool packed = false;
 };
 
 /// What it took. Sizes in bytes.
@@ -35,8 +38,8 @@ struct CompressionSummary {
 
 /// H (3N by 3N) with T = float or double numbers, as near blocks of neighbouring leaves, and for the far field nested
 /// bases (interpolative decomposition: Martinsson, Rokhlin, Tygert 2005; nested: Boerm 2010) with couplings that are
-/// values of the kernel between two skeletons: H ~ near + P S Q^T. Diagonal blocks make H 1 = 0. Vectors are in the
-/// tree's order (tree_row), filled up to a whole panel.
+/// values of the kernel between two skeletons: H ~ D + near + P S Q^T. Diagonal blocks D make H 1 = 0. Vectors are in
+/// the tree's order (tree_row), filled up to a whole panel.
 template <class T>
 class CompressedMatrix {
  public:
@@ -71,7 +74,7 @@ class CompressedMatrix {
   void plan_downwards(const std::vector<WorkRange>& columns, const std::vector<WorkRange>& rows);
   void plan_leaves(const std::vector<WorkRange>& rows, Index out);
   /// Its number; `bytes` grows by what it takes.
-  std::int32_t add_row(WorkRange out, std::vector<WorkRange> sources, std::size_t& bytes);
+  std::int32_t add_row(WorkRange out, std::vector<WorkRange> sources, const Cluster& cluster, std::size_t& bytes);
   void fill_bases(const NestedBases& bases);
   void fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
   void fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress);
@@ -83,7 +86,9 @@ class CompressedMatrix {
   ClusterTree tree_;
   BlockPartition partition_;
   Index rows_ = 0;
+  bool packed_;
   BlockRows<T> schedule_;
+  std::vector<Eigen::Matrix3d> diagonal_;  ///< blocks of H, by place
   std::vector<std::int32_t> leaf_of_place_;
   std::vector<std::int32_t> up_, coupling_, out_;  ///< block row by cluster, -1 where there is none
   Index work_rows_ = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <random>
 
 #include <skinbem/base/lapack.hpp>
 #include <skinbem/hmatrix/tile_product.hpp>
@@ -15,9 +16,9 @@ using MatrixMap = Eigen::Map<Eigen::MatrixXd>;
 
 /// A matrix in memory that a thread keeps: fresh pages for every cluster would cost more than the work. One for each
 /// `use`; not initialised.
-enum class Use { field, hats, gram, factor };
+enum class Use { field, sums, kept, hats, gram, factor, count };
 MatrixMap scratch(Use use, Index rows, Index columns) {
-  thread_local std::vector<double> storage[4];
+  thread_local std::vector<double> storage[static_cast<int>(Use::count)];
   std::vector<double>& numbers = storage[static_cast<int>(use)];
   if (numbers.size() < static_cast<std::size_t>(rows * columns))
     numbers.resize(static_cast<std::size_t>(rows * columns));
@@ -51,15 +52,12 @@ class BasisMaker {
   }
 
   ClusterBasis column_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
-    const std::vector<Dof> candidates = cluster.is_leaf() ? dipole_dofs(cluster) : skeletons(cluster, bases);
+    if (cluster.is_leaf()) return dipoles_like_hats(cluster);
+    const std::vector<Dof> candidates = skeletons(cluster, bases);
     const MatrixMap A = field_of(candidates);
-    const Index hats = cluster.is_leaf() ? cluster.size() * components : 0;
-    MatrixMap gram = scratch(Use::gram, A.cols() + hats, A.cols());
-    lapack::gram_matrix(A, gram.topRows(A.cols()));
-    if (hats > 0) lapack::transposed_product(field_of_hats(cluster), A, gram.bottomRows(hats));
-    ColumnSelection selection = select_columns(gram, tolerance_);
-    if (hats > 0) selection.weights = fill_up(cluster, selection.weights.bottomRows(hats));
-    return basis(candidates, std::move(selection));
+    MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
+    lapack::gram_matrix(A, gram);
+    return basis(candidates, select_columns(gram, tolerance_));
   }
 
  private:
@@ -93,6 +91,31 @@ class BasisMaker {
     }
     return dofs;
   }
+  /// There are many more dipoles around a leaf than it takes: they are chosen by fewer equations, and only what those
+  /// chosen weigh is found from all of them.
+  ClusterBasis dipoles_like_hats(const Cluster& leaf) const {
+    std::vector<Dof> dipoles = dipole_dofs(leaf);
+    const MatrixMap A = field_of(dipoles);
+    const MatrixMap fewer = random_sums(A);
+    MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
+    lapack::gram_matrix(fewer, gram);
+    const std::vector<std::int32_t> chosen = select_columns(gram, tolerance_).columns;
+
+    MatrixMap kept = scratch(Use::kept, equations_, Index(chosen.size()));
+    std::vector<Dof> candidates;
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      kept.col(Index(k)) = A.col(chosen[k]);
+      candidates.push_back(dipoles[chosen[k]]);
+    }
+    const Index hats = leaf.size() * components;
+    MatrixMap products = scratch(Use::gram, kept.cols() + hats, kept.cols());
+    lapack::gram_matrix(kept, products.topRows(kept.cols()));
+    lapack::transposed_product(field_of_hats(leaf), kept, products.bottomRows(hats));
+    ColumnSelection all = select_columns(products, 0);
+    all.weights = fill_up(leaf, all.weights.bottomRows(hats));
+    return basis(candidates, std::move(all));
+  }
+
   static ClusterBasis basis(const std::vector<Dof>& candidates, ColumnSelection selection) {
     ClusterBasis result;
     for (const std::int32_t k : selection.columns) result.skeleton.push_back(candidates[k]);
@@ -156,6 +179,25 @@ class BasisMaker {
       }
     });
     return A;
+  }
+
+  /// Half as many equations, each the sum of some with random signs: what is large in A is large in them too (Clarkson
+  /// and Woodruff, Low rank approximation and regression in input sparsity time, 2013).
+  MatrixMap random_sums(const MatrixMap& A) const {
+    constexpr Index panel = components * Index(kPanel);
+    const Index sums = std::max(Index(1), equations_ / panel / 2) * panel;
+    MatrixMap S = scratch(Use::sums, sums, A.cols());
+    S.setZero();
+    std::minstd_rand random;
+    Eigen::VectorXd sign(equations_);
+    for (double& s : sign) s = random() < random.max() / 2 ? -1 : 1;
+    for (Index k = 0; k < A.cols(); ++k) {
+      for (Index first = 0; first < equations_; first += sums) {
+        const Index count = std::min(sums, equations_ - first);
+        S.col(k).head(count) += sign.segment(first, count).cwiseProduct(A.col(k).segment(first, count));
+      }
+    }
+    return S;
   }
 
   /// The equations of a panel of samples; `from` is entry (0, j).

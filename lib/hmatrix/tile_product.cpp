@@ -2,6 +2,7 @@
 #include <skinbem/hmatrix/tile_product.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 // Vectors of a length unknown at compile time cannot be array elements; such machines use their fixed-length set.
@@ -74,16 +75,53 @@ HWY_INLINE void multiply_slice(const T* slice, std::size_t height, std::size_t d
     multiply_strip_columns<1>(slice + row, height, depth, rhs, columns, sums + row);
 }
 
+/// A tile as it lies in memory, slice by slice.
 template <class T>
-HWY_INLINE void multiply(const T* tile, std::size_t height, std::span<const RowRange<T>> ranges, std::size_t columns,
+class FullTile {
+ public:
+  explicit FullTile(const T* numbers) : next_(numbers) {}
+  HWY_INLINE const T* next_slice(std::size_t height, std::size_t depth) {
+    return std::exchange(next_, next_ + height * depth);
+  }
+
+ private:
+  const T* next_;
+};
+
+/// Slices of a packed tile, unpacked into the first-level cache.
+class UnpackedTile {
+ public:
+  explicit UnpackedTile(PackedTile tile) : next_(tile) {}
+  HWY_INLINE const float* next_slice(std::size_t height, std::size_t depth) {
+    const hn::CappedTag<float, kTileStep> d;
+    const hn::Rebind<std::int16_t, decltype(d)> d16;
+    const hn::Rebind<std::int32_t, decltype(d)> d32;
+    for (std::size_t k = 0; k < depth; ++k) {
+      const auto scale = hn::Set(d, next_.scales[k]);
+      for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
+        const auto number = hn::PromoteTo(d32, hn::LoadU(d16, next_.numbers + k * height + r));
+        hn::Store(hn::Mul(hn::ConvertTo(d, number), scale), d, slice_ + k * height + r);
+      }
+    }
+    next_.numbers += height * depth;
+    next_.scales += depth;
+    return slice_;
+  }
+
+ private:
+  PackedTile next_;
+  HWY_ALIGN float slice_[kTile * kDepth];
+};
+
+template <class T, class Tile>
+HWY_INLINE void multiply(Tile tile, std::size_t height, std::span<const RowRange<T>> ranges, std::size_t columns,
                          T* out) {
   HWY_ALIGN T sums[kTile * kMostColumns];
   std::fill_n(sums, kTile * columns, T(0));
   for (const RowRange<T>& range : ranges) {
     for (std::size_t done = 0; done < range.length; done += kDepth) {
       const std::size_t depth = std::min(kDepth, range.length - done);
-      multiply_slice(tile, height, depth, range.first + done * columns, columns, sums);
-      tile += depth * height;
+      multiply_slice(tile.next_slice(height, depth), height, depth, range.first + done * columns, columns, sums);
     }
   }
   for (std::size_t r = 0; r < height; ++r) {
@@ -93,12 +131,34 @@ HWY_INLINE void multiply(const T* tile, std::size_t height, std::span<const RowR
 
 void multiply_f32(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
                   float* out) {
-  multiply(tile, height, ranges, columns, out);
+  multiply(FullTile(tile), height, ranges, columns, out);
 }
 
 void multiply_f64(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges, std::size_t columns,
                   double* out) {
-  multiply(tile, height, ranges, columns, out);
+  multiply(FullTile(tile), height, ranges, columns, out);
+}
+
+void multiply_packed(PackedTile tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
+                     float* out) {
+  multiply(UnpackedTile(tile), height, ranges, columns, out);
+}
+
+float pack(const float* values, std::size_t height, std::int16_t* numbers) {
+  const hn::CappedTag<float, kTileStep> d;
+  const hn::Rebind<std::int16_t, decltype(d)> d16;
+  constexpr float most = 32767;
+  auto largest = hn::Zero(d);
+  for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
+    largest = hn::Max(largest, hn::Abs(hn::LoadU(d, values + r)));
+  }
+  const float scale = std::max(hn::GetLane(hn::MaxOfLanes(d, largest)) / most, std::numeric_limits<float>::min());
+  const auto inverse = hn::Set(d, 1 / scale);
+  for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
+    const auto number = hn::NearestInt(hn::Mul(hn::LoadU(d, values + r), inverse));
+    hn::StoreU(hn::DemoteTo(d16, number), d16, numbers + r);
+  }
+  return scale;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -110,6 +170,8 @@ namespace skinbem {
 
 HWY_EXPORT(multiply_f32);
 HWY_EXPORT(multiply_f64);
+HWY_EXPORT(multiply_packed);
+HWY_EXPORT(pack);
 
 void multiply_tile(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
                    float* out) {
@@ -119,6 +181,15 @@ void multiply_tile(const float* tile, std::size_t height, std::span<const RowRan
 void multiply_tile(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges,
                    std::size_t columns, double* out) {
   HWY_DYNAMIC_DISPATCH(multiply_f64)(tile, height, ranges, columns, out);
+}
+
+void multiply_tile(PackedTile tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
+                   float* out) {
+  HWY_DYNAMIC_DISPATCH(multiply_packed)(tile, height, ranges, columns, out);
+}
+
+float pack_column(const float* values, std::size_t height, std::int16_t* numbers) {
+  return HWY_DYNAMIC_DISPATCH(pack)(values, height, numbers);
 }
 
 }  // namespace skinbem

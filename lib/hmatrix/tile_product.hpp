@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace skinbem {
@@ -23,6 +24,12 @@ struct RowRange {
   std::size_t length;
 };
 
+/// A tile whose numbers take 16 bits: number (r, k) is numbers[k height + r] * scales[k].
+struct PackedTile {
+  const std::int16_t* numbers;
+  const float* scales;
+};
+
 /// One tile times stacked right-hand sides: `tile` is height by (sum of the ranges' lengths), the result (height by
 /// #columns, row-major, adjacent) is written to `out`; at most kMostColumns columns. Sums run in the order of storage,
 /// so the result does not depend on who calls.
@@ -30,5 +37,11 @@ void multiply_tile(const float* tile, std::size_t height, std::span<const RowRan
                    float* out);
 void multiply_tile(const double* tile, std::size_t height, std::span<const RowRange<double>> ranges,
                    std::size_t columns, double* out);
+void multiply_tile(PackedTile tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
+                   float* out);
+
+/// One column of a PackedTile from `height` values, and its scale: the error is at most half of that, 1/65534 of the
+/// largest value.
+float pack_column(const float* values, std::size_t height, std::int16_t* numbers);
 
 }  // namespace skinbem

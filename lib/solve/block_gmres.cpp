@@ -118,10 +118,10 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
   const Eigen::MatrixXd y = hessenberg.solution();
   VectorBlock sum = VectorBlock::Zero(V.front().rows(), y.cols());
   for (Index k = 0, row = 0; row < y.rows(); row += V[k].cols(), ++k) {
-    preconditioner(V[k], Z);
-    add_product(Z, y.middleRows(row, V[k].cols()), sum);
+    add_product(V[k], y.middleRows(row, V[k].cols()), sum);
   }
-  return sum;
+  preconditioner(sum, Z);
+  return Z;
 }
 
 }  // namespace

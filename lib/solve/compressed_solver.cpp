@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include <skinbem/hmatrix/exact_rows.hpp>
-#include <skinbem/solve/block_gmres.hpp>
+#include <skinbem/solve/coarse_correction.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/schwarz.hpp>
 
@@ -22,6 +22,7 @@ class CompressedSolver final : public NeumannSolver {
         exact_(collocation),
         rigid_(B),
         B_(H_.to_tree(B)),
+        coarse_(mesh, H_.tree(), H_.rows(), system()),
         gmres_{options.residual},
         progress_(progress) {}
 
@@ -69,13 +70,23 @@ class CompressedSolver final : public NeumannSolver {
   static_assert(most_columns <= Index(kMostColumns));
 
   Eigen::MatrixXd solve_block(const Eigen::MatrixXd& G, GmresSummary& summary) const {
-    typename CompressedMatrix<T>::Block work;
-    const BlockOperator A = [&](const VectorBlock& in, VectorBlock& out) {
+    const BlockOperator A = system();
+    VectorBlock rest, local;
+    const BlockOperator preconditioner = [&](const VectorBlock& in, VectorBlock& out) {
+      rest = in;
+      coarse_.apply(rest, out);
+      schwarz_.apply(rest, local);
+      out += local;
+    };
+    return H_.from_tree(block_gmres(A, preconditioner, H_.to_tree(G), gmres_, summary, progress_));
+  }
+
+  /// H + B B^T
+  BlockOperator system() const {
+    return [this, work = typename CompressedMatrix<T>::Block()](const VectorBlock& in, VectorBlock& out) mutable {
       H_.multiply(in, out, work);
       add_product(B_, inner_products(B_, in), out);
     };
-    const BlockOperator preconditioner = [&](const VectorBlock& in, VectorBlock& out) { schwarz_.apply(in, out); };
-    return H_.from_tree(block_gmres(A, preconditioner, H_.to_tree(G), gmres_, summary, progress_));
   }
 
   CompressedMatrix<T> H_;
@@ -83,6 +94,7 @@ class CompressedSolver final : public NeumannSolver {
   ExactRows exact_;
   Eigen::MatrixXd rigid_;  ///< B in the order of the mesh
   VectorBlock B_;          ///< in the tree's order
+  CoarseCorrection coarse_;
   GmresOptions gmres_;
   Progress progress_;
 };
@@ -96,6 +108,7 @@ IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertice
   options.compression.samples = tolerance >= 1e-4 ? 192 : tolerance >= 1e-5 ? 384 : 640;
   options.residual = std::min(1e-3, 2 * tolerance);
   options.single = tolerance >= 2e-5;
+  options.compression.packed = tolerance >= 1e-4;
   return options;
 }
 

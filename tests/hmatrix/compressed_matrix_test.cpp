@@ -69,6 +69,10 @@ TEST_P(Compressed, SinglePrecisionAddsItsOwnRoundingOnly) {
   EXPECT_NEAR(error<float>({1e-4, 1.5, 384}), exactly, tolerance::compressed_f32);
 }
 
+TEST_P(Compressed, PackedNumbersAddTheirOwnRoundingOnly) {
+  EXPECT_NEAR(error<float>({1e-4, 1.5, 384, true}), error<float>({1e-4, 1.5, 384}), tolerance::compressed_packed);
+}
+
 TEST_P(Compressed, WithoutFarFieldItIsTheDenseMatrix) {
   EXPECT_EQ(compressed<float>({1e-3, 0, 192}).summary().mean_rank, 0);
   EXPECT_LE(error<double>({1e-3, 0, 192}), tolerance::invariance);
@@ -78,7 +82,10 @@ TEST_P(Compressed, AnnihilatesTranslations) {
   Eigen::MatrixXd ones(3 * mesh_.vertex_count(), 3);
   for (Index k = 0; k < mesh_.vertex_count(); ++k) ones.middleRows<3>(3 * k).setIdentity();
   EXPECT_LE(product(compressed<double>({1e-3}), ones).cwiseAbs().maxCoeff(), tolerance::rounding_of_sums);
-  EXPECT_LE(product(compressed<float>({1e-3}), ones).cwiseAbs().maxCoeff(), tolerance::compressed_f32);
+  for (const bool packed : {false, true}) {
+    const CompressedMatrix<float> H = compressed<float>({1e-3, 1.5, 192, packed});
+    EXPECT_LE(product(H, ones).cwiseAbs().maxCoeff(), tolerance::compressed_f32);
+  }
 }
 
 TEST_P(Compressed, SameBitsForOneAndTwoThreads) {
@@ -179,8 +186,8 @@ TEST(CompressedMatrix, DoesNotDependOnTheUnitOfLength) {
 TEST(CompressedMatrix, TakesAboutWhatWasPredicted) {
   for (const TriangleMesh& mesh : {leg(), slender_ellipsoid(4), cube(14)}) {
     const Collocation<Kelvin<double>> collocation(mesh, {kPoisson, 1.0}, {1e-4});
-    for (const double requested : {1e-2, 1e-4}) {
-      const CompressionOptions options{requested};
+    for (const auto& [requested, packed] : {std::pair{1e-2, false}, {1e-4, false}, {1e-4, true}}) {
+      const CompressionOptions options{requested, 1.5, 192, packed};
       const double real = double(CompressedMatrix<float>(mesh, collocation, options).bytes());
       const double predicted = double(predict_compressed_bytes(mesh, options, sizeof(float)));
       EXPECT_LE(predicted, real * tolerance::predicted_bytes) << mesh.vertex_count() << ' ' << requested;
@@ -192,11 +199,14 @@ TEST(CompressedMatrix, TakesAboutWhatWasPredicted) {
 TEST(CompressedMatrix, SizesInItsSummaryAreAllOfIt) {
   const TriangleMesh mesh = slender_ellipsoid(4);
   const Collocation<Kelvin<double>> collocation(mesh, {kPoisson, 1.0}, {1e-4});
-  const CompressedMatrix<float> H(mesh, collocation, {1e-3});
-  const CompressionSummary& s = H.summary();
-  EXPECT_EQ(s.near_bytes + s.coupling_bytes + s.basis_bytes, H.bytes());
-  EXPECT_GT(s.coupling_bytes, 0u);
+  const CompressedMatrix<float> H(mesh, collocation, {1e-3}), packed(mesh, collocation, {1e-3, 1.5, 192, true});
+  for (const auto* matrix : {&H, &packed}) {
+    const CompressionSummary& s = matrix->summary();
+    EXPECT_EQ(s.near_bytes + s.coupling_bytes + s.basis_bytes, matrix->bytes());
+    EXPECT_GT(s.coupling_bytes, 0u);
+  }
   EXPECT_LT(H.bytes(), 4 * 9 * std::size_t(mesh.vertex_count() * mesh.vertex_count()) / 2);
+  EXPECT_LT(10 * packed.bytes(), 6 * H.bytes());
 }
 
 }  // namespace

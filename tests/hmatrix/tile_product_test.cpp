@@ -61,34 +61,74 @@ TYPED_TEST(TileProduct, EqualsEigensForRangesOfEveryLength) {
   this->expect_eigens(32, 18, {});
 }
 
+/// y = A x, z = B [y; x]: two stages of heights that are not whole tiles.
+template <class T>
+struct TwoStages {
+  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  static constexpr Index n = 80, m = 64;
+  Matrix A = Matrix::Random(m, n), B = Matrix::Random(n, n + m);
+  BlockRows<T> rows;
+
+  explicit TwoStages(bool packed) {
+    rows.begin_stage();
+    const std::size_t first = rows.add({n, m}, {{0, n}}, packed);
+    rows.begin_stage();
+    const std::size_t second = rows.add({n + m, n}, {{n, m}, {0, n}}, packed);
+    rows.allocate();
+    set(first, A);
+    set(second, B);
+  }
+  /// Column by column, and back to what is stored.
+  void set(std::size_t row, Matrix& values) {
+    for (Index k = 0; k < values.cols(); ++k) {
+      for (Index r = 0; r < values.rows(); r += Index(kTile)) {
+        rows.set_column(row, r, k, values.col(k).data() + r);
+        rows.get_column(row, r, k, values.col(k).data() + r);
+      }
+    }
+  }
+  double error() const {
+    typename BlockRows<T>::Block work = BlockRows<T>::Block::Random(2 * n + m, 11);
+    const Matrix x = work.topRows(n);
+    rows.run(work);
+    Matrix stacked(n + m, 11);
+    stacked << A * x, x;
+    return double((work.bottomRows(n) - B * stacked).cwiseAbs().maxCoeff() / (B * stacked).cwiseAbs().maxCoeff());
+  }
+};
+
 TYPED_TEST(TileProduct, OfBlockRowsRunsStageAfterStage) {
   using T = TypeParam;
-  // y = A x, z = B [y; x]: heights that are not whole tiles
-  const Index n = 80, m = 64;
-  BlockRows<T> rows;
-  rows.begin_stage();
-  const std::size_t first = rows.add({n, m}, {{0, n}});
-  rows.begin_stage();
-  const std::size_t second = rows.add({n + m, n}, {{n, m}, {0, n}});
-  rows.allocate();
-  using M = typename TestFixture::Matrix;
-  const M A = M::Random(m, n), B = M::Random(n, n + m);
-  const auto fill = [&](std::size_t row, const M& values) {
-    for (Index k = 0; k < values.cols(); ++k) {
-      for (Index r = 0; r < values.rows(); ++r) rows.tile_column(row, r, k)[r % Index(kTile)] = values(r, k);
+  const TwoStages<T> stages(false);
+  EXPECT_LE(stages.error(), sizeof(T) == 4 ? tolerance::tile_product_f32 : tolerance::rounding_of_sums);
+  EXPECT_EQ(stages.rows.bytes(), sizeof(T) * std::size_t(80 * 64 + 80 * 144));
+}
+
+TEST(PackedTile, ColumnsErrByHalfAStepOfTheirLargestNumber) {
+  for (const float size : {1e-30f, 1.0f, 1e30f}) {
+    for (const Index height : {16, 32, 48}) {
+      const Eigen::VectorXf values = size * Eigen::VectorXf::Random(height);
+      Eigen::Matrix<std::int16_t, Eigen::Dynamic, 1> numbers(height);
+      const float scale = pack_column(values.data(), std::size_t(height), numbers.data());
+      EXPECT_FLOAT_EQ(scale, values.cwiseAbs().maxCoeff() / 32767);
+      EXPECT_LE((numbers.cast<float>() * scale - values).cwiseAbs().maxCoeff(), 0.501f * scale);
     }
-  };
-  fill(first, A);
-  fill(second, B);
-  typename BlockRows<T>::Block work = BlockRows<T>::Block::Random(2 * n + m, 11);
-  const M x = work.topRows(n);
-  rows.run(work);
-  M stacked(n + m, 11);
-  stacked << A * x, x;
-  const double scale = double((B * stacked).cwiseAbs().maxCoeff());
-  EXPECT_LE(double((work.bottomRows(n) - B * stacked).cwiseAbs().maxCoeff()),
-            (sizeof(T) == 4 ? tolerance::tile_product_f32 : tolerance::rounding_of_sums) * scale);
-  EXPECT_EQ(rows.bytes(), sizeof(T) * std::size_t(m * n + n * (n + m)));
+  }
+}
+
+TEST(PackedTile, ZerosStayZero) {
+  const Eigen::VectorXf zero = Eigen::VectorXf::Zero(48);
+  Eigen::Matrix<std::int16_t, Eigen::Dynamic, 1> numbers(48);
+  EXPECT_TRUE(std::isfinite(pack_column(zero.data(), 48, numbers.data())));
+  EXPECT_TRUE((numbers.array() == 0).all());
+}
+
+TEST(PackedTile, OfBlockRowsRunsStageAfterStage) {
+  const TwoStages<float> stages(true);
+  EXPECT_LE(stages.error(), tolerance::tile_product_f32);
+  const std::size_t numbers = 80 * 64 + 80 * 144, scales = 2 * 80 + 2 * 144;
+  EXPECT_EQ(stages.rows.bytes(), 2 * numbers + 4 * scales);
+  EXPECT_EQ(TwoStages<double>(true).rows.bytes(), 8 * numbers);  // never packed
 }
 
 }  // namespace
