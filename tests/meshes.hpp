@@ -204,6 +204,13 @@ inline TriangleMesh icosphere(int level, double radius = 1) {
 inline TriangleMesh ellipsoid(int level, const Vec3& axes) { return stretched(icosphere(level), axes); }
 inline TriangleMesh slender_ellipsoid(int level) { return ellipsoid(level, {6, 1, 1}); }
 
+/// A sphere with one vertex pulled out to `length`: slivers that meet in a needle's tip.
+inline TriangleMesh spiked_sphere(int level, double length = 4) {
+  TriangleMesh mesh = icosphere(level);
+  mesh.vertices.row(0) *= length;
+  return mesh;
+}
+
 /// Genus 1 about z; n steps around the axis, m around the tube.
 inline TriangleMesh torus(double ring_radius = 1, double tube_radius = 0.4, int n = 16, int m = 8) {
   MeshMaker maker;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include <skinbem/base/lapack.hpp>
 #include <skinbem/base/stopwatch.hpp>
+#include <skinbem/mesh/adjacency.hpp>
 
 namespace skinbem {
 namespace {
@@ -35,7 +37,7 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
       partition_(tree_, options.eta),
       rows_(round_up(mesh.vertex_count(), kPanel) * components),
       packed_(options.packed),
-      diagonal_(mesh.vertex_count(), Eigen::Matrix3d::Zero()) {
+      diagonal_(mesh.vertex_count(), Mat3::Zero()) {
   leaf_of_place_.resize(mesh.vertex_count());
   for (const std::int32_t leaf : tree_.leaves()) {
     std::fill(leaf_of_place_.begin() + tree_.clusters()[leaf].begin,
@@ -54,6 +56,7 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
   summary_.coupling_seconds = watch.lap();
   fill_near(collocation, progress);
   set_diagonal();
+  keep_exact_rows(mesh, collocation);
   summary_.near_seconds = watch.lap();
 }
 
@@ -303,6 +306,37 @@ void CompressedMatrix<T>::set_diagonal() {
   }
 }
 
+/// Of the worst of the vertices whose own block is close to singular, and of their neighbours, whose errors they see.
+template <class T>
+void CompressedMatrix<T>::keep_exact_rows(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation) {
+  constexpr double smooth = 2;  // |D^-1| of a flat place
+  constexpr std::size_t most_vertices = 64;
+  std::vector<std::pair<double, std::int32_t>> found;
+  for (std::size_t place = 0; place < diagonal_.size(); ++place) {
+    const double size = diagonal_[place].inverse().norm();
+    if (!(size <= 15 * smooth)) found.push_back({-size, tree_.order()[place]});
+  }
+  if (found.empty()) return;
+  std::sort(found.begin(), found.end());
+  found.resize(std::min(found.size(), most_vertices));
+  const IndexLists neighbours = neighbours_of_vertices(mesh);
+  std::vector<bool> wanted(mesh.vertex_count());
+  for (const auto& [size, vertex] : found) {
+    wanted[vertex] = true;
+    for (const std::int32_t neighbour : neighbours[vertex]) wanted[neighbour] = true;
+  }
+  std::vector<std::int32_t> vertices;
+  for (std::int32_t place = 0; place < std::int32_t(diagonal_.size()); ++place) {
+    if (!wanted[tree_.order()[place]]) continue;
+    exact_places_.push_back(place);
+    vertices.push_back(tree_.order()[place]);
+  }
+  const ExactRows exact(collocation, std::move(vertices));
+  exact_rows_ = to_tree(exact.rows().transpose()).transpose();
+  for (std::size_t k = 0; k < exact_places_.size(); ++k) diagonal_[exact_places_[k]] = exact.own_block(k);
+  summary_.exact_vertices = Index(exact_places_.size());
+}
+
 template <class T>
 VectorBlock CompressedMatrix<T>::to_tree(const Eigen::MatrixXd& vectors) const {
   VectorBlock result = VectorBlock::Zero(rows_, vectors.cols());
@@ -347,6 +381,22 @@ void CompressedMatrix<T>::multiply(const VectorBlock& X, VectorBlock& Y, Block& 
       }
     }
   }
+  multiply_exact_rows(X, Y);
+}
+
+template <class T>
+void CompressedMatrix<T>::multiply_exact_rows(const VectorBlock& X, VectorBlock& Y) const {
+  constexpr Index together = 8;  // vertices
+  const Index count = Index(exact_places_.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (Index first = 0; first < count; first += together) {
+    const Index rows = components * std::min(together, count - first);
+    RowMajorMatrix product = RowMajorMatrix::Zero(rows, X.cols());
+    lapack::add_product(exact_rows_.row(components * first).data(), X, rows, product.data());
+    for (Index r = 0; r < rows; ++r) {
+      Y.row(tree_row(exact_places_[first + r / components], int(r % components), components)) = product.row(r);
+    }
+  }
 }
 
 template <class T>
@@ -374,6 +424,16 @@ Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t
       }
     }
     entries.block<components, components>(components * c, components * c) += diagonal_[places[c]].cast<float>();
+  }
+  for (Index k = 0; k < Index(exact_places_.size()); ++k) {
+    const auto found = std::find(places.begin(), places.end(), exact_places_[k]);
+    if (found == places.end()) continue;
+    for (Index c = 0; c < components * n; ++c) {
+      entries.block<components, 1>(components * (found - places.begin()), c) =
+          exact_rows_
+              .block<components, 1>(components * k, tree_row(places[c / components], int(c % components), components))
+              .template cast<float>();
+    }
   }
   return entries;
 }

@@ -7,6 +7,7 @@
 
 #include <skinbem/base/progress.hpp>
 #include <skinbem/hmatrix/block_rows.hpp>
+#include <skinbem/hmatrix/exact_rows.hpp>
 #include <skinbem/hmatrix/nested_basis.hpp>
 
 namespace skinbem {
@@ -31,6 +32,7 @@ struct CompressionSummary {
   std::size_t coupling_bytes = 0;  ///< between skeletons
   std::size_t basis_bytes = 0;
   double mean_rank = 0;  ///< of all bases
+  Index exact_vertices = 0;
   double basis_seconds = 0;
   double near_seconds = 0;
   double coupling_seconds = 0;
@@ -57,6 +59,10 @@ class CompressedMatrix {
   /// Y = H X in the tree's order, at most kMostColumns columns. `work` is scratch space that is kept.
   void multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const;
 
+  /// Of the rows that are kept as they are.
+  const std::vector<std::int32_t>& exact_places() const { return exact_places_; }
+  /// The blocks of vertices with themselves, by place.
+  const std::vector<Mat3>& diagonal() const { return diagonal_; }
   /// The entries of H between these places of one leaf's neighbourhood: 3 #places squared, degrees of freedom in the
   /// order of the places. Zero for pairs of leaves that are not neighbours.
   Eigen::MatrixXf near_entries(const std::vector<std::int32_t>& places) const;
@@ -80,6 +86,9 @@ class CompressedMatrix {
   void fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress);
   void fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf);
   void set_diagonal();
+  void keep_exact_rows(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation);
+  /// Their part of Y = H X.
+  void multiply_exact_rows(const VectorBlock& X, VectorBlock& Y) const;
   /// Where the neighbour's columns begin in the leaf's block row; -1 where it is none.
   Index near_column(std::int32_t leaf, std::int32_t neighbour) const;
 
@@ -88,7 +97,9 @@ class CompressedMatrix {
   Index rows_ = 0;
   bool packed_;
   BlockRows<T> schedule_;
-  std::vector<Eigen::Matrix3d> diagonal_;  ///< blocks of H, by place
+  std::vector<Mat3> diagonal_;
+  std::vector<std::int32_t> exact_places_;
+  RowMajorMatrix exact_rows_;  ///< of H: 3 #exact_places by rows, in the tree's order
   std::vector<std::int32_t> leaf_of_place_;
   std::vector<std::int32_t> up_, coupling_, out_;  ///< block row by cluster, -1 where there is none
   Index work_rows_ = 0;

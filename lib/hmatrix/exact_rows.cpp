@@ -8,16 +8,10 @@
 
 namespace skinbem {
 
-ExactRows::ExactRows(const Collocation<Kelvin<double>>& collocation, std::size_t count) {
+ExactRows::ExactRows(const Collocation<Kelvin<double>>& collocation, std::vector<std::int32_t> vertices)
+    : vertices_(std::move(vertices)) {
   const std::int32_t n = static_cast<std::int32_t>(collocation.node_count());
   std::vector<std::int32_t> all(n);
-  std::iota(all.begin(), all.end(), 0);
-  std::mt19937 generator(1);
-  for (std::size_t k = 0; k < std::min<std::size_t>(count, n); ++k) {
-    const std::size_t other = k + generator() % (all.size() - k);
-    std::swap(all[k], all[other]);
-    vertices_.push_back(all[k]);
-  }
   std::iota(all.begin(), all.end(), 0);
   const Index rows = 3 * Index(vertices_.size());
   rows_.resize(rows, 3 * Index(n));
@@ -46,6 +40,16 @@ Eigen::MatrixXd ExactRows::pick(const Eigen::MatrixXd& V) const {
 
 Eigen::RowVectorXd ExactRows::estimate_norms(const Eigen::MatrixXd& sampled) const {
   return sampled.colwise().norm() * std::sqrt(double(rows_.cols()) / double(rows_.rows()));
+}
+
+std::vector<std::int32_t> random_vertices(Index vertex_count, std::size_t count) {
+  std::vector<std::int32_t> all(vertex_count);
+  std::iota(all.begin(), all.end(), 0);
+  std::mt19937 generator(1);
+  count = std::min(count, all.size());
+  for (std::size_t k = 0; k < count; ++k) std::swap(all[k], all[k + generator() % (all.size() - k)]);
+  all.resize(count);
+  return all;
 }
 
 }  // namespace skinbem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Some rows of H without compression, to measure what compression costs.
+/// Some rows of H without compression: to measure what it costs, and for vertices that cannot afford it.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,28 @@
 
 namespace skinbem {
 
-/// The rows of H that belong to `count` vertices drawn at random (the same for the same mesh): 3 count by 3N numbers.
+/// The rows of H that belong to some vertices: 3 #vertices by 3N numbers. Their own blocks make H 1 = 0.
 class ExactRows {
  public:
-  static constexpr std::size_t default_count = 16;
+  ExactRows(const Collocation<Kelvin<double>>& collocation, std::vector<std::int32_t> vertices);
 
-  explicit ExactRows(const Collocation<Kelvin<double>>& collocation, std::size_t count = default_count);
-
+  const std::vector<std::int32_t>& vertices() const { return vertices_; }
+  const RowMajorMatrix& rows() const { return rows_; }
+  /// The 3 by 3 block of vertex number k with itself.
+  Mat3 own_block(std::size_t k) const { return rows_.block<3, 3>(3 * Index(k), 3 * Index(vertices_[k])); }
   /// Those rows of H V, V of 3N rows in the order of the mesh.
   Eigen::MatrixXd multiply(const Eigen::MatrixXd& V) const { return rows_ * V; }
   /// Those rows of V.
   Eigen::MatrixXd pick(const Eigen::MatrixXd& V) const;
-  /// The root mean square of a sampled difference, taken as that of all rows: an estimate of each column's norm.
+  /// The root mean square of a difference in these rows, taken as that of all: an estimate of each column's norm.
   Eigen::RowVectorXd estimate_norms(const Eigen::MatrixXd& sampled) const;
 
  private:
   std::vector<std::int32_t> vertices_;
   RowMajorMatrix rows_;
 };
+
+/// Different vertices drawn at random, the same for the same number; all where there are fewer.
+std::vector<std::int32_t> random_vertices(Index vertex_count, std::size_t count);
 
 }  // namespace skinbem

@@ -42,7 +42,8 @@ struct ResponseModel::State {
   std::vector<Landmark> landmarks;
   ResponseSummary summary;
   double quadrature_error = 0;
-  double sampled_residual = 0;
+  double compressed_to;     ///< tolerance, where H is compressed
+  Eigen::MatrixXd answers;  ///< to random defects, where H is compressed
 
   State(const TriangleMesh& body, const ResponseOptions& given)
       : mesh(body),
@@ -50,7 +51,8 @@ struct ResponseModel::State {
         collocation(mesh, Kelvin<double>{given.poisson, 1.0}, quadrature_for(given.tolerance)),
         neighbours(neighbours_of_vertices(mesh)),
         areas(vertex_areas(mesh)),
-        B(rigid_modes(mesh.vertices)) {
+        B(rigid_modes(mesh.vertices)),
+        compressed_to(given.tolerance) {
     summary.prediction =
         choose_solver(options.solver, mesh, options.tolerance, omp_get_max_threads(), options.memory_limit);
     summary.prediction.solver == Solver::dense ? make_dense() : make_compressed();
@@ -73,11 +75,24 @@ struct ResponseModel::State {
 
   void make_compressed() {
     Stopwatch watch;
-    solver = make_iterative_solver(mesh, collocation, B,
-                                   IterativeOptions::for_tolerance(options.tolerance, mesh.vertex_count()),
-                                   options.progress);
-    quadrature_error = options.tolerance * compressed_quadrature;
-    summary.assemble_seconds = watch.lap();
+    solver = make_iterative_solver(
+        mesh, collocation, B, IterativeOptions::for_tolerance(compressed_to, mesh.vertex_count()), options.progress);
+    answers = solver->answers_to_defects();
+    summary.assemble_seconds += watch.lap();
+  }
+
+  bool compressed() const { return summary.prediction.solver == Solver::hmatrix; }
+
+  /// Compresses ten times less; false where that is no longer possible. Throws Error(usage) where it does not fit into
+  /// memory.
+  bool tighten() {
+    constexpr double factor = 0.1;
+    if (!compressed() || compressed_to * factor < std::max(1e-7, options.tolerance * factor * factor)) return false;
+    compressed_to *= factor;
+    solver.reset();
+    choose_solver(Solver::hmatrix, mesh, compressed_to, omp_get_max_threads(), options.memory_limit);
+    make_compressed();
+    return true;
   }
 
   /// The part of the error of R that quadrature makes: the tolerance that every element integral keeps (a priori), or
@@ -85,10 +100,10 @@ struct ResponseModel::State {
   /// times |H (w x X)| / |w x X|.
   static constexpr double rotation_residual_to_error = 50000;
   static QuadratureOptions quadrature_for(double tolerance) { return {tolerance}; }
+  /// Ratio of the second to the first extent of landmarks: the error of a rotation about their line is its inverse.
+  static constexpr double on_a_line = 1e-6;
   /// R errs at least eight times less than the tolerance of H (docs/accuracy.md).
   static constexpr double compressed_quadrature = 0.125;
-  /// Of the error of R to the residual, measured: 0.05 to 0.3.
-  static constexpr double residual_to_error = 0.5;
 
   void check(const Landmark& landmark, Index replaced) const {
     for (Index k = 0; k < Index(greens.size()); ++k) {
@@ -100,12 +115,23 @@ struct ResponseModel::State {
     }
   }
 
+  /// Where the compressed solver does not converge, once more with less compression.
   std::vector<GreensFunctions> solve(std::span<const Landmark> wanted) {
+    for (;;) {
+      try {
+        return solve_once(wanted);
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::numerical || !tighten()) throw;
+      }
+    }
+  }
+
+  std::vector<GreensFunctions> solve_once(std::span<const Landmark> wanted) {
     Stopwatch watch;
     std::vector<GreensFunctions> made;
     Eigen::MatrixXd G(B.rows(), 3 * Index(wanted.size()));
     for (const Landmark& landmark : wanted) {
-      GreensFunctions g{landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}};
+      GreensFunctions g{landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}, {}};
       auto columns = G.middleCols<3>(3 * Index(made.size()));
       columns = collocation.single_layer_columns(g.patch.traction);
       g.load = columns.norm();
@@ -120,13 +146,11 @@ struct ResponseModel::State {
     for (std::size_t k = 0; k < made.size(); ++k) {
       made[k].X = X.middleCols<3>(3 * Index(k));
       made[k].L = L.middleCols<3>(3 * Index(k));
+      if (compressed()) made[k].defect = ended.defect.middleCols<3>(3 * Index(k));
     }
     report(options.progress, "solve", 1);
     summary.iterations = std::max(summary.iterations, ended.iterations);
     summary.residual = std::max(summary.residual, ended.residual);
-    const bool dense = summary.prediction.solver == Solver::dense;
-    sampled_residual = std::max(sampled_residual, ended.sampled_residual);
-    summary.estimated_error = quadrature_error + (dense ? summary.residual : residual_to_error * sampled_residual);
     summary.solve_seconds += watch.lap();
     return made;
   }
@@ -176,6 +200,43 @@ struct ResponseModel::State {
     return solution;
   }
 
+  /// After a change of landmarks: estimates the error of R, and compresses less where it is too large. Throws
+  /// Error(numerical) where that does not help.
+  void settle() {
+    constexpr double allowed = 3, hopeless = 10;  // times the tolerance
+    keep_names();
+    summary.estimated_error = estimated_error();
+    while (summary.estimated_error > allowed * options.tolerance && tighten()) {
+      greens = solve(landmarks);
+      summary.estimated_error = estimated_error();
+    }
+    if (compressed() && summary.estimated_error > hopeless * options.tolerance) {
+      std::ostringstream message;
+      message
+          << "the response is estimated to err by " << summary.estimated_error << " instead of " << options.tolerance
+          << " (residual " << summary.residual
+          << "): the body bends too easily for a compressed matrix; allow a larger tolerance, or use the dense solver";
+      throw Error(ErrorCode::numerical, message.str());
+    }
+  }
+
+  double estimated_error() const {
+    if (!compressed()) return quadrature_error + summary.residual;
+    if (!enough_landmarks()) return 0;
+    const Eigen::MatrixXd X = all_X(), solution = coefficients(X);
+    Eigen::MatrixXd defects(greens.front().defect.rows(), X.cols());
+    for (std::size_t k = 0; k < greens.size(); ++k) defects.middleCols<3>(3 * Index(k)) = greens[k].defect;
+    const Eigen::MatrixXd left = defects * solution.topRows(X.cols());
+    const double defect = left.colwise().norm().maxCoeff() / std::sqrt(double(left.rows()));
+    const Eigen::MatrixXd coefficients_of_answers = solution * measure(answers);
+    const Eigen::MatrixXd held =
+        answers - X * coefficients_of_answers.topRows(X.cols()) - B * coefficients_of_answers.bottomRows<6>();
+    constexpr double safety = 2;  // measured without it: 0.5 to 1.7 of the error
+    return options.tolerance * compressed_quadrature + safety * defect * held.cwiseAbs().maxCoeff();
+  }
+
+  bool enough_landmarks() const { return greens.size() >= 3 && collinear_measure(positions()) >= on_a_line; }
+
   void require_enough_landmarks() const {
     if (greens.size() < 3) {
       throw Error(ErrorCode::bad_input,
@@ -183,9 +244,7 @@ struct ResponseModel::State {
                       " landmarks: at least three that are not on a line are needed, or the body is "
                       "free to turn; add landmarks");
     }
-    constexpr double on_a_line =
-        1e-6;  // ratio of the second to the first extent: the rotation's own error would be its inverse
-    if (collinear_measure(positions()) < on_a_line) {
+    if (!enough_landmarks()) {
       throw Error(ErrorCode::bad_input,
                   "the landmarks lie on a line, so that the body is free to turn about it; add or move a landmark");
     }
@@ -219,21 +278,35 @@ void ResponseModel::add(std::span<const Landmark> landmarks) {
       }
     }
   }
+  const std::size_t before = state_->greens.size();
   for (GreensFunctions& g : state_->solve(landmarks)) state_->greens.push_back(std::move(g));
-  state_->keep_names();
+  try {
+    state_->settle();
+  } catch (...) {
+    state_->greens.resize(before);
+    state_->keep_names();
+    throw;
+  }
 }
 
 void ResponseModel::move(Index k, const Landmark& landmark) {
   if (k < 0 || k >= Index(state_->greens.size())) throw Error(ErrorCode::usage, "no landmark of that number to move");
   state_->check(landmark, k);
-  state_->greens[k] = std::move(state_->solve(std::span(&landmark, 1)).front());
-  state_->keep_names();
+  GreensFunctions made = std::move(state_->solve(std::span(&landmark, 1)).front());
+  std::swap(state_->greens[k], made);
+  try {
+    state_->settle();
+  } catch (...) {
+    std::swap(state_->greens[k], made);
+    state_->keep_names();
+    throw;
+  }
 }
 
 void ResponseModel::remove(Index k) {
   if (k < 0 || k >= Index(state_->greens.size())) throw Error(ErrorCode::usage, "no landmark of that number to remove");
   state_->greens.erase(state_->greens.begin() + k);
-  state_->keep_names();
+  state_->settle();
 }
 
 std::vector<GreensFunctions> ResponseModel::greens_functions(std::span<const Landmark> landmarks) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <sstream>
 
 #include <skinbem/hmatrix/exact_rows.hpp>
@@ -12,6 +13,8 @@
 namespace skinbem {
 namespace {
 
+constexpr std::size_t sampled_vertices = 16;
+
 template <class T>
 class CompressedSolver final : public NeumannSolver {
  public:
@@ -19,12 +22,14 @@ class CompressedSolver final : public NeumannSolver {
                    const IterativeOptions& options, const Progress& progress)
       : H_(mesh, collocation, options.compression, progress),
         schwarz_(mesh, H_, B),
-        exact_(collocation),
+        sample_(collocation, random_vertices(mesh.vertex_count(), sampled_vertices)),
         rigid_(B),
         B_(H_.to_tree(B)),
         coarse_(mesh, H_.tree(), H_.rows(), system()),
         gmres_{options.residual},
-        progress_(progress) {}
+        progress_(progress) {
+    for (const Mat3& block : H_.diagonal()) inverse_diagonal_.push_back(block.inverse());
+  }
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary) const override {
     Eigen::MatrixXd Y(G.rows(), G.cols());
@@ -45,9 +50,14 @@ class CompressedSolver final : public NeumannSolver {
       throw Error(ErrorCode::numerical, message.str());
     }
     const Eigen::MatrixXd difference =
-        exact_.multiply(Y) + exact_.pick(rigid_ * (rigid_.transpose() * Y)) - exact_.pick(G);
+        sample_.multiply(Y) + sample_.pick(rigid_ * (rigid_.transpose() * Y)) - sample_.pick(G);
     const Eigen::RowVectorXd size = G.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-    ended.sampled_residual = exact_.estimate_norms(difference).cwiseQuotient(size).maxCoeff();
+    ended.sampled_residual = sample_.estimate_norms(difference).cwiseQuotient(size).maxCoeff();
+    ended.defect.resize(difference.rows(), difference.cols());
+    for (std::size_t k = 0; k < sample_.vertices().size(); ++k) {
+      ended.defect.middleRows<3>(3 * Index(k)) =
+          sample_.own_block(k).inverse() * difference.middleRows<3>(3 * Index(k));
+    }
     if (summary) *summary = ended;
     return Y;
   }
@@ -64,21 +74,33 @@ class CompressedSolver final : public NeumannSolver {
     return result;
   }
 
+  Eigen::MatrixXd answers_to_defects() const override {
+    constexpr Index probes = 3;
+    constexpr double roughly = 0.1;
+    const std::vector<std::int32_t>& order = H_.tree().order();
+    Eigen::MatrixXd defects(rigid_.rows(), probes);
+    Eigen::Matrix<double, 3, probes> signs;
+    std::minstd_rand random;
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      if (place % ClusterTree::leaf_size == 0) {
+        for (double& sign : signs.reshaped()) sign = random() < random.max() / 2 ? -1 : 1;
+      }
+      defects.middleRows<3>(3 * Index(order[place])) = signs;
+    }
+    for (const std::int32_t place : H_.exact_places()) defects.middleRows<3>(3 * Index(order[place])).setZero();
+    GmresSummary summary;
+    return H_.from_tree(block_gmres(scaled_system(), preconditioner(), H_.to_tree(defects), {roughly}, summary));
+  }
+
  private:
   /// Of a block of GMRES: more cost more for the basis than they save in iterations.
   static constexpr Index most_columns = 36;
   static_assert(most_columns <= Index(kMostColumns));
 
   Eigen::MatrixXd solve_block(const Eigen::MatrixXd& G, GmresSummary& summary) const {
-    const BlockOperator A = system();
-    VectorBlock rest, local;
-    const BlockOperator preconditioner = [&](const VectorBlock& in, VectorBlock& out) {
-      rest = in;
-      coarse_.apply(rest, out);
-      schwarz_.apply(rest, local);
-      out += local;
-    };
-    return H_.from_tree(block_gmres(A, preconditioner, H_.to_tree(G), gmres_, summary, progress_));
+    VectorBlock g = H_.to_tree(G);
+    multiply_blocks(inverse_diagonal_, g);
+    return H_.from_tree(block_gmres(scaled_system(), preconditioner(), g, gmres_, summary, progress_));
   }
 
   /// H + B B^T
@@ -88,13 +110,42 @@ class CompressedSolver final : public NeumannSolver {
       add_product(B_, inner_products(B_, in), out);
     };
   }
+  /// The same, each vertex's equations solved for its own displacement: where a block is close to singular, a small
+  /// residual is a large error.
+  BlockOperator scaled_system() const {
+    return [this, A = system()](const VectorBlock& in, VectorBlock& out) {
+      A(in, out);
+      multiply_blocks(inverse_diagonal_, out);
+    };
+  }
+  BlockOperator preconditioner() const {
+    return [this, rest = VectorBlock(), local = VectorBlock()](const VectorBlock& in, VectorBlock& out) mutable {
+      rest = in;
+      multiply_blocks(H_.diagonal(), rest);
+      coarse_.apply(rest, out);
+      schwarz_.apply(rest, local);
+      out += local;
+    };
+  }
+  /// V = blocks V, a block for each place.
+  static void multiply_blocks(const std::vector<Mat3>& blocks, VectorBlock& V) {
+#pragma omp parallel for schedule(static)
+    for (Index place = 0; place < Index(blocks.size()); ++place) {
+      const Index row = tree_row(place, 0, 3), step = Index(kPanel);  // between components
+      for (Index c = 0; c < V.cols(); ++c) {
+        const Vec3 product = blocks[place] * Vec3(V(row, c), V(row + step, c), V(row + 2 * step, c));
+        for (int i = 0; i < 3; ++i) V(row + i * step, c) = product[i];
+      }
+    }
+  }
 
   CompressedMatrix<T> H_;
   SchwarzPreconditioner schwarz_;
-  ExactRows exact_;
+  ExactRows sample_;
   Eigen::MatrixXd rigid_;  ///< B in the order of the mesh
   VectorBlock B_;          ///< in the tree's order
   CoarseCorrection coarse_;
+  std::vector<Mat3> inverse_diagonal_;
   GmresOptions gmres_;
   Progress progress_;
 };

@@ -17,6 +17,9 @@ struct SolveSummary {
   double residual = 0;  ///< largest over the columns of |(H + B B^T) y - g| / |g|, computed, not estimated
   /// The same with the H that was not compressed, from rows drawn at random; the same as residual for a dense H.
   double sampled_residual = 0;
+  /// Compressed: what the equations of some vertices are left with, each solved for the vertex's own displacement (in
+  /// units of y); 3 #vertices by #columns. The same vertices in every solve of a mesh.
+  Eigen::MatrixXd defect;
 };
 
 /// (H + B B^T)^-1: H the double layer's matrix (3N by 3N, null space the rigid motions), B their orthonormal basis
@@ -30,6 +33,9 @@ class NeumannSolver {
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary = nullptr) const = 0;
   /// H times V, as the solver has it.
   virtual Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const = 0;
+  /// Compressed: the displacements (3N by some) that random defects of size 1 would cause, alike within a leaf of the
+  /// tree as those of compression are. They tell what the defects that are left may do. Nothing for a dense solver.
+  virtual Eigen::MatrixXd answers_to_defects() const { return {}; }
 };
 
 /// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that

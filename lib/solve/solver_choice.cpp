@@ -8,8 +8,6 @@
 #include <sstream>
 #include <string>
 
-#include <skinbem/hmatrix/exact_rows.hpp>
-
 namespace skinbem {
 namespace {
 
@@ -34,7 +32,7 @@ SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, dou
   const double blocks_of_the_basis = 4 * digits, columns = 18;
   const double schwarz = 3 * n * 3 * 128 * 4;
   const double vectors = 3 * n * 8 * columns * (blocks_of_the_basis + 8);
-  const double rows = 3 * n * 8 * 3 * ExactRows::default_count;
+  const double rows = 3 * n * 8 * 3 * 16;  // of the sample
   const double number_bytes = options.single ? 4 : 8;
   return {Solver::hmatrix, seconds_per_vertex * n / threads,
           predict_compressed_bytes(mesh, options.compression, static_cast<std::size_t>(number_bytes)) +

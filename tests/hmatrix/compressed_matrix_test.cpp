@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
+
 #include <skinbem/hmatrix/compressed_matrix.hpp>
+#include <skinbem/mesh/adjacency.hpp>
 #include <skinbem/mesh/mesh_io.hpp>
 
 #include "files.hpp"
@@ -120,6 +123,19 @@ TEST_P(Compressed, NearEntriesAreTheDenseMatrixs) {
       }
     }
   }
+}
+
+TEST(CompressedMatrix, KeepsTheRowsOfANeedlesTip) {
+  const TriangleMesh mesh = spiked_sphere(4, 6);
+  const Collocation<Kelvin<double>> collocation(mesh, {kPoisson, 1.0}, {1e-6});
+  const CompressedMatrix<float> H(mesh, collocation, {1e-2, 1.5, 192, true});
+  const Index around = Index(neighbours_of_vertices(mesh)[0].size());
+  EXPECT_EQ(H.summary().exact_vertices, 1 + around);
+  const Eigen::MatrixXd V = vectors(mesh), found = product(H, V), exact = ExactRows(collocation, {0}).multiply(V);
+  EXPECT_LE((found.topRows<3>() - exact).cwiseAbs().maxCoeff(), tolerance::invariance);
+  const std::size_t place = std::find(H.tree().order().begin(), H.tree().order().end(), 0) - H.tree().order().begin();
+  const Eigen::MatrixXf entries = H.near_entries({std::int32_t(place)});
+  EXPECT_EQ(entries, H.diagonal()[place].cast<float>());
 }
 
 TEST_P(Compressed, TreesOrderIsAPermutation) {

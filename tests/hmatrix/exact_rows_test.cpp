@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <skinbem/hmatrix/exact_rows.hpp>
 
 #include "meshes.hpp"
@@ -19,28 +21,31 @@ struct RowsOfASphere {
 
 TEST(ExactRows, AreRowsOfTheDenseMatrix) {
   const RowsOfASphere sphere;
-  const ExactRows rows(sphere.collocation, 7);
+  const ExactRows rows(sphere.collocation, {3, 600, 0, 17, 5, 200, 81});
   const Eigen::MatrixXd V = Eigen::MatrixXd::Random(sphere.H.cols(), 4);
   const Eigen::MatrixXd expected = rows.pick(sphere.H * V), found = rows.multiply(V);
   ASSERT_EQ(found.rows(), 21);
   EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), tolerance::invariance);
 }
 
-TEST(ExactRows, PickDifferentVerticesAndTheSameEveryTime) {
+TEST(ExactRows, HaveTheirOwnBlocks) {
   const RowsOfASphere sphere;
-  Eigen::MatrixXd numbers(sphere.H.cols(), 1);
-  for (Index k = 0; k < numbers.rows(); ++k) numbers(k, 0) = double(k);
-  const Eigen::MatrixXd first = ExactRows(sphere.collocation).pick(numbers);
-  EXPECT_EQ(first.rows(), 3 * Index(ExactRows::default_count));
-  for (Index a = 0; a < first.rows(); ++a) {
-    for (Index b = 0; b < a; ++b) EXPECT_NE(first(a, 0), first(b, 0));
-  }
-  EXPECT_EQ(first, ExactRows(sphere.collocation).pick(numbers));
+  const ExactRows rows(sphere.collocation, {81, 4});
+  EXPECT_LE((rows.own_block(0) - sphere.H.block<3, 3>(3 * 81, 3 * 81)).cwiseAbs().maxCoeff(), tolerance::invariance);
+  EXPECT_LE((rows.own_block(1) - sphere.H.block<3, 3>(3 * 4, 3 * 4)).cwiseAbs().maxCoeff(), tolerance::invariance);
+}
+
+TEST(RandomVertices, AreDifferentAndTheSameEveryTime) {
+  const std::vector<std::int32_t> drawn = random_vertices(1000, 16);
+  EXPECT_EQ(drawn.size(), 16u);
+  EXPECT_EQ(std::set(drawn.begin(), drawn.end()).size(), 16u);
+  EXPECT_EQ(drawn, random_vertices(1000, 16));
+  EXPECT_NE(drawn, random_vertices(1001, 16));
 }
 
 TEST(ExactRows, OfASmallMeshAreAllOfThem) {
   const Collocation<Kelvin<double>> collocation(cube(1), {0.3, 1.0});
-  const ExactRows rows(collocation, 100);
+  const ExactRows rows(collocation, random_vertices(8, 100));
   const Eigen::MatrixXd V = Eigen::MatrixXd::Random(24, 2);
   EXPECT_EQ(rows.pick(V).rows(), 24);
   // the norm of all is no estimate

@@ -163,7 +163,7 @@ TEST(CompressedSolverOf, TakesAnyNumberOfColumns) {
   const Eigen::MatrixXd G = equations.loads(40);  // more than a block, and than a product takes
   const Eigen::MatrixXd Y = solver->solve(G);
   ASSERT_EQ(Y.cols(), 120);
-  EXPECT_LE(equations.true_residual(Y, G), 2 * equations.options(1e-5).residual);
+  EXPECT_LE(equations.true_residual(Y, G), 3 * equations.options(1e-5).residual);
   const Eigen::MatrixXd product = solver->apply_H(Y);
   for (const Index c : {0, 47, 48, 63, 64, 119}) {
     EXPECT_LE((product.col(c) - solver->apply_H(Y.col(c))).norm(), tolerance::compressed_f32 * Y.col(c).norm()) << c;
