@@ -16,6 +16,9 @@ void sgetrs_(const char* trans, const int* n, const int* nrhs, const float* a, c
              float* b, const int* ldb, int* info);
 void dgetrs_(const char* trans, const int* n, const int* nrhs, const double* a, const int* lda, const int* pivots,
              double* b, const int* ldb, int* info);
+void sgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k, const float* alpha,
+            const float* a, const int* lda, const float* b, const int* ldb, const float* beta, float* c,
+            const int* ldc);
 void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k, const double* alpha,
             const double* a, const int* lda, const double* b, const int* ldb, const double* beta, double* c,
             const int* ldc);
@@ -55,6 +58,18 @@ inline bool solve_transposed(Eigen::MatrixXf& A, Eigen::MatrixXf& B) {
   if (getrf(&n, A.data(), pivots.data()) != 0) return false;
   getrs(&n, &columns, A.data(), pivots.data(), B.data());
   return true;
+}
+
+/// C -= op(A) B, op(A) the transpose of A for 'T' and A itself for 'N'.
+inline void subtract_product(char transposed, const Eigen::Ref<const Eigen::MatrixXf>& A,
+                             const Eigen::Ref<const Eigen::MatrixXf>& B, Eigen::Ref<Eigen::MatrixXf> C) {
+  const int m = static_cast<int>(C.rows()), n = static_cast<int>(C.cols()), k = static_cast<int>(B.rows());
+  const int lda = static_cast<int>(A.outerStride()), ldb = static_cast<int>(B.outerStride()),
+            ldc = static_cast<int>(C.outerStride());
+  const float minus_one = -1, one = 1;
+  if (m > 0 && n > 0 && k > 0) {
+    sgemm_(&transposed, "N", &m, &n, &k, &minus_one, A.data(), &lda, B.data(), &ldb, &one, C.data(), &ldc);
+  }
 }
 
 /// C += alpha A B, A stored by rows.

@@ -403,15 +403,19 @@ template <class T>
 Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t>& places) const {
   const Index n = Index(places.size());
   Eigen::MatrixXf entries = Eigen::MatrixXf::Zero(components * n, components * n);
-  for (Index c = 0; c < n; ++c) {
-    const std::int32_t column_leaf = leaf_of_place_[places[c]];
-    const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
-    for (Index r = 0, next; r < n; r = next) {  // rows of one tile at once
-      const std::int32_t panel = places[r] / std::int32_t(kPanel), row_leaf = leaf_of_place_[places[r]];
-      for (next = r + 1; next < n && places[next] / std::int32_t(kPanel) == panel;) ++next;
-      const Index first = near_column(row_leaf, column_leaf);
+  for (Index r = 0, next; r < n; r = next) {  // rows of one tile at once, columns as they are stored
+    const std::int32_t panel = places[r] / std::int32_t(kPanel), row_leaf = leaf_of_place_[places[r]];
+    for (next = r + 1; next < n && places[next] / std::int32_t(kPanel) == panel;) ++next;
+    const Index tile = tree_row(panel * std::int32_t(kPanel) - tree_.clusters()[row_leaf].begin, 0, components);
+    std::int32_t column_leaf = -1;
+    Index first = -1;
+    for (Index c = 0; c < n; ++c) {
+      if (leaf_of_place_[places[c]] != column_leaf) {
+        column_leaf = leaf_of_place_[places[c]];
+        first = near_column(row_leaf, column_leaf);
+      }
       if (first < 0) continue;
-      const Index tile = tree_row(panel * std::int32_t(kPanel) - tree_.clusters()[row_leaf].begin, 0, components);
+      const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
       for (int j = 0; j < components; ++j) {
         T numbers[kTile];
         schedule_.get_column(out_[row_leaf], tile, first + tree_row(column_place, j, components), numbers);
@@ -423,7 +427,9 @@ Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t
         }
       }
     }
-    entries.block<components, components>(components * c, components * c) += diagonal_[places[c]].cast<float>();
+  }
+  for (Index k = 0; k < n; ++k) {
+    entries.block<components, components>(components * k, components * k) += diagonal_[places[k]].cast<float>();
   }
   for (Index k = 0; k < Index(exact_places_.size()); ++k) {
     const auto found = std::find(places.begin(), places.end(), exact_places_[k]);

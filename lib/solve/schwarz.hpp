@@ -31,7 +31,7 @@ class SchwarzPreconditioner {
   };
 
   /// False for a singular matrix.
-  static bool invert(Eigen::MatrixXf entries, const Cluster& cluster, const std::vector<std::int32_t>& places,
+  static bool invert(const Eigen::MatrixXf& entries, const Cluster& cluster, const std::vector<std::int32_t>& places,
                      Leaf& leaf);
 
   std::vector<Leaf> leaves_;
