@@ -83,12 +83,12 @@ struct ResponseModel::State {
 
   bool compressed() const { return summary.prediction.solver == Solver::hmatrix; }
 
-  /// Compresses ten times less; false where that is no longer possible. Throws Error(usage) where it does not fit into
-  /// memory.
-  bool tighten() {
-    constexpr double factor = 0.1;
-    if (!compressed() || compressed_to * factor < std::max(1e-7, options.tolerance * factor * factor)) return false;
-    compressed_to *= factor;
+  /// Compresses less, by `factor`; false where that is no longer possible. Throws Error(usage) where it does not fit
+  /// into memory.
+  bool tighten(double factor) {
+    constexpr double most = 1e-2;  // of the tolerance
+    if (!compressed() || compressed_to <= std::max(finest_compression, most * options.tolerance)) return false;
+    compressed_to = std::max(compressed_to * factor, finest_compression);
     solver.reset();
     choose_solver(Solver::hmatrix, mesh, compressed_to, omp_get_max_threads(), options.memory_limit);
     make_compressed();
@@ -121,7 +121,7 @@ struct ResponseModel::State {
       try {
         return solve_once(wanted);
       } catch (const Error& error) {
-        if (error.code() != ErrorCode::numerical || !tighten()) throw;
+        if (error.code() != ErrorCode::numerical || !tighten(0.1)) throw;
       }
     }
   }
@@ -203,10 +203,11 @@ struct ResponseModel::State {
   /// After a change of landmarks: estimates the error of R, and compresses less where it is too large. Throws
   /// Error(numerical) where that does not help.
   void settle() {
-    constexpr double allowed = 3, hopeless = 10;  // times the tolerance
+    constexpr double allowed = 5, hopeless = 10;  // times the tolerance
     keep_names();
     summary.estimated_error = estimated_error();
-    while (summary.estimated_error > allowed * options.tolerance && tighten()) {
+    while (summary.estimated_error > allowed * options.tolerance &&
+           tighten(std::clamp(options.tolerance / summary.estimated_error, 0.05, 0.2))) {
       greens = solve(landmarks);
       summary.estimated_error = estimated_error();
     }

@@ -11,9 +11,6 @@
 namespace skinbem {
 namespace {
 
-/// The nested bases' normal equations stop here.
-constexpr double finest_compression = 1e-7;
-
 /// Assembly a vertex-triangle pair, then LU in single precision refined in double.
 SolverPrediction predict_dense(double n, double threads) {
   constexpr double seconds_per_pair = 6e-8, flops_per_second = 8e10;

@@ -14,6 +14,9 @@ enum class Solver {
   hmatrix,    ///< the compressed matrix, iteratively
 };
 
+/// Tolerance of a response below which H is not compressed: the nested bases' normal equations stop there.
+inline constexpr double finest_compression = 1e-7;
+
 /// The name that the program knows: `auto`, `dense`, `hmatrix`.
 const char* name_of(Solver solver);
 
