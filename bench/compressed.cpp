@@ -99,7 +99,7 @@ void product(benchmark::State& state) {
   Stopwatch watch;
   for (auto _ : state) H.multiply(X, Y, work);
   const double seconds = watch.lap() / static_cast<double>(state.iterations());
-  const double bytes = static_cast<double>(H.bytes()), flops = 2.0 * kColumns * bytes / sizeof(float);
+  const double bytes = static_cast<double>(H.bytes()), flops = 2.0 * kColumns * static_cast<double>(H.numbers());
   state.counters["GF/s"] = 1e-9 * flops / seconds;
   state.counters["GB/s"] = 1e-9 * bytes / seconds;
   state.counters["sgemm_GF/s"] = 1e-9 * limits.flops;

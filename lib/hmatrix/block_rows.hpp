@@ -58,6 +58,7 @@ class BlockRows {
   void run(Block& work) const;
 
   std::size_t size() const { return rows_.size(); }
+  std::size_t numbers() const { return numbers_.size() + packed_.size(); }
   std::size_t bytes() const;
   /// Of one row.
   static std::size_t bytes(const BlockRow& row);

@@ -71,6 +71,8 @@ class CompressedMatrix {
   const BlockPartition& partition() const { return partition_; }
   const CompressionSummary& summary() const { return summary_; }
   std::size_t bytes() const { return schedule_.bytes(); }
+  /// Multiplications and additions of a product, by column.
+  std::size_t numbers() const { return schedule_.numbers(); }
 
  private:
   static constexpr int components = 3;

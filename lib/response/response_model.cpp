@@ -37,7 +37,7 @@ struct ResponseModel::State {
   IndexLists neighbours;
   Eigen::VectorXd areas;
   Eigen::MatrixXd B;
-  std::unique_ptr<NeumannSolver> solver;
+  std::unique_ptr<NeumannSolver> solver;  ///< none while it is to be compressed anew
   std::vector<GreensFunctions> greens;
   std::vector<Landmark> landmarks;
   ResponseSummary summary;
@@ -83,15 +83,15 @@ struct ResponseModel::State {
 
   bool compressed() const { return summary.prediction.solver == Solver::hmatrix; }
 
-  /// Compresses less, by `factor`; false where that is no longer possible. Throws Error(usage) where it does not fit
-  /// into memory.
+  /// Compresses less, by `factor`; false where that is no longer possible, or would not fit into memory.
   bool tighten(double factor) {
     constexpr double most = 1e-2;  // of the tolerance
     if (!compressed() || compressed_to <= std::max(finest_compression, most * options.tolerance)) return false;
-    compressed_to = std::max(compressed_to * factor, finest_compression);
+    const double next = std::max(compressed_to * factor, finest_compression);
+    const std::size_t limit = options.memory_limit > 0 ? options.memory_limit : available_memory();
+    if (predict_solver(Solver::hmatrix, mesh, next, omp_get_max_threads()).bytes > limit) return false;
+    compressed_to = next;
     solver.reset();
-    choose_solver(Solver::hmatrix, mesh, compressed_to, omp_get_max_threads(), options.memory_limit);
-    make_compressed();
     return true;
   }
 
@@ -127,6 +127,7 @@ struct ResponseModel::State {
   }
 
   std::vector<GreensFunctions> solve_once(std::span<const Landmark> wanted) {
+    if (!solver) make_compressed();  // anew
     Stopwatch watch;
     std::vector<GreensFunctions> made;
     Eigen::MatrixXd G(B.rows(), 3 * Index(wanted.size()));
