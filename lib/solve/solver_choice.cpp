@@ -29,11 +29,13 @@ SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, dou
   const double blocks_of_the_basis = 4 * digits, columns = 18;
   const double schwarz = 3 * n * 3 * 128 * 4;
   const double vectors = 3 * n * 8 * columns * (blocks_of_the_basis + 8);
-  const double rows = 3 * n * 8 * 3 * 16;  // of the sample
+  const double rows = 3 * n * 8 * 3 * 16;         // of the sample
+  const double coarse = 3 * n * 8 * 2 * 48;       // Z and A Z
+  const double bases = 3 * n * 8 * 2 * 2 * 77.0;  // in double while they are made: rows and columns, leaves and above
   const double number_bytes = options.single ? 4 : 8;
   return {Solver::hmatrix, seconds_per_vertex * n / threads,
           predict_compressed_bytes(mesh, options.compression, static_cast<std::size_t>(number_bytes)) +
-              static_cast<std::size_t>(schwarz + vectors + rows + 1e8)};
+              static_cast<std::size_t>(schwarz + vectors + rows + coarse + bases + 1e8)};
 }
 
 std::string gigabytes(std::size_t bytes) {
