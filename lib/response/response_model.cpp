@@ -162,9 +162,10 @@ struct ResponseModel::State {
     return p;
   }
 
-  void keep_names() {
+  void keep_names_and_estimate() {
     landmarks.clear();
     for (const GreensFunctions& g : greens) landmarks.push_back(g.landmark);
+    summary.estimated_error = estimated_error();
   }
 
   /// X and L of all landmarks side by side.
@@ -205,8 +206,7 @@ struct ResponseModel::State {
   /// Error(numerical) where that does not help.
   void settle() {
     constexpr double allowed = 5, hopeless = 10;  // times the tolerance
-    keep_names();
-    summary.estimated_error = estimated_error();
+    keep_names_and_estimate();
     while (summary.estimated_error > allowed * options.tolerance &&
            tighten(std::clamp(options.tolerance / summary.estimated_error, 0.05, 0.2))) {
       greens = solve(landmarks);
@@ -286,7 +286,7 @@ void ResponseModel::add(std::span<const Landmark> landmarks) {
     state_->settle();
   } catch (...) {
     state_->greens.resize(before);
-    state_->keep_names();
+    state_->keep_names_and_estimate();
     throw;
   }
 }
@@ -300,7 +300,7 @@ void ResponseModel::move(Index k, const Landmark& landmark) {
     state_->settle();
   } catch (...) {
     std::swap(state_->greens[k], made);
-    state_->keep_names();
+    state_->keep_names_and_estimate();
     throw;
   }
 }
@@ -308,7 +308,7 @@ void ResponseModel::move(Index k, const Landmark& landmark) {
 void ResponseModel::remove(Index k) {
   if (k < 0 || k >= Index(state_->greens.size())) throw Error(ErrorCode::usage, "no landmark of that number to remove");
   state_->greens.erase(state_->greens.begin() + k);
-  state_->settle();
+  state_->keep_names_and_estimate();
 }
 
 std::vector<GreensFunctions> ResponseModel::greens_functions(std::span<const Landmark> landmarks) {

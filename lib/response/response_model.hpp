@@ -73,7 +73,9 @@ class ResponseModel {
   ResponseModel& operator=(ResponseModel&&) noexcept;
 
   /// Appends landmarks: three right-hand sides each, all solved together. Throws Error naming a landmark that is not on
-  /// the mesh, or on the vertex of another; nothing is added then.
+  /// the mesh, or on the vertex of another; nothing is added then. With the compressed solver, where the estimated
+  /// error exceeds five tolerances, H is compressed less and everything solved again; Error(numerical) where it still
+  /// exceeds ten.
   void add(std::span<const Landmark> landmarks);
   /// Replaces landmark k (order and count stay). Three right-hand sides. Throws like add, changing nothing.
   void move(Index k, const Landmark& landmark);

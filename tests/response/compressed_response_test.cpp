@@ -104,6 +104,14 @@ TEST(CompressedEdits, RefusedOnesChangeNothing) {
   EXPECT_EQ(edited.response(), before);
 }
 
+TEST(CompressedEdits, RemovingIsNeverRefused) {
+  ResponseModel edited = model(needle_box(120), 1e-3, Solver::hmatrix);
+  const int iterations = edited.summary().iterations;
+  while (!edited.landmarks().empty()) edited.remove(0);
+  EXPECT_EQ(edited.summary().iterations, iterations);
+  EXPECT_EQ(edited.summary().estimated_error, 0);
+}
+
 TEST(CompressedResponseOf, TwoLandmarksHaveNoEstimateYet) {
   const TriangleMesh mesh = slender_ellipsoid(3);
   ResponseModel made(mesh, {.poisson = 0.45, .tolerance = 1e-3, .solver = Solver::hmatrix});

@@ -47,17 +47,17 @@ struct Equations {
   }
 };
 
-constexpr double kResidual = 5e-4;
+constexpr double kResidual = 2e-4;
 
 /// The same, compressed: operators in the tree's order.
 struct CompressedEquations {
   explicit CompressedEquations(TriangleMesh mesh) : equations{std::move(mesh)} {}
 
   Equations equations;
-  CompressedMatrix<float> H{equations.mesh, equations.collocation, {1e-4}};
+  CompressedMatrix<double> H{equations.mesh, equations.collocation, {1e-4}};
   SchwarzPreconditioner schwarz{equations.mesh, H, equations.B};
   VectorBlock B = H.to_tree(equations.B);
-  CompressedMatrix<float>::Block work;
+  CompressedMatrix<double>::Block work;
   BlockOperator A = [this](const VectorBlock& in, VectorBlock& out) {
     H.multiply(in, out, work);
     add_product(B, inner_products(B, in), out);
