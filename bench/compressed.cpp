@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compressed double layer of the limb with 9,666 vertices: how long it takes to build, and its product with 18
 // columns, as the iteration makes it, on one and two threads (the argument). `share` is that of the smaller limit: what
-// sgemm computes and memory delivers to as many threads, measured in the same run.
+// sgemm computes and memory delivers to as many threads, measured in the same run, the best of each.
 #include <benchmark/benchmark.h>
 #include <cblas.h>
 #include <omp.h>
+
+#include <algorithm>
+#include <limits>
 
 #include <skinbem/base/stopwatch.hpp>
 #include <skinbem/hmatrix/compressed_matrix.hpp>
@@ -96,9 +99,12 @@ void product(benchmark::State& state) {
   VectorBlock Y;
   Matrix::Block work;
   H.multiply(X, Y, work);
-  Stopwatch watch;
-  for (auto _ : state) H.multiply(X, Y, work);
-  const double seconds = watch.lap() / static_cast<double>(state.iterations());
+  double seconds = std::numeric_limits<double>::infinity();  // the best, as of the limits
+  for (auto _ : state) {
+    Stopwatch watch;
+    H.multiply(X, Y, work);
+    seconds = std::min(seconds, watch.lap());
+  }
   const double bytes = static_cast<double>(H.bytes()), flops = 2.0 * kColumns * static_cast<double>(H.numbers());
   state.counters["GF/s"] = 1e-9 * flops / seconds;
   state.counters["GB/s"] = 1e-9 * bytes / seconds;

@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "skinbem/hmatrix/tile_product.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes first
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -26,13 +27,20 @@ constexpr std::size_t kDepth = 96;
 /// Columns of the result that are summed at once, beside three vectors of rows: as registers allow.
 constexpr std::size_t kColumns = HWY_TARGET <= HWY_AVX3 ? 6 : 4;
 
+/// The next slice, asked for from memory a little with every column of the one that is multiplied: otherwise the
+/// processor would wait for it.
+struct Ahead {
+  const char* next;
+  std::size_t step;  ///< bytes
+};
+
 /// sums (column by column, kTile apart) += strip of kVectors vectors of the tile times kRhs columns. A slice is summed
 /// by itself before it is added: in single precision the error of a long row is that of a short one.
 /// Loops over sums are expanded from index sequences: compilers keep an array in registers only where every index is a
 /// constant from the outset.
 template <std::size_t kRhs, class T, std::size_t... kSum>
 HWY_INLINE void multiply_strip(const T* HWY_RESTRICT strip, std::size_t height, std::size_t depth,
-                               const T* HWY_RESTRICT rhs, std::size_t columns, T* HWY_RESTRICT sums,
+                               const T* HWY_RESTRICT rhs, std::size_t columns, T* HWY_RESTRICT sums, Ahead ahead,
                                std::index_sequence<kSum...>) {
   using D = hn::CappedTag<T, kTileStep>;
   using V = hn::Vec<D>;
@@ -40,7 +48,8 @@ HWY_INLINE void multiply_strip(const T* HWY_RESTRICT strip, std::size_t height, 
   constexpr std::size_t vectors = sizeof...(kSum) / kRhs;
   const D d;
   V sum[] = {((void)kSum, hn::Zero(d))...};
-  for (std::size_t k = 0; k < depth; ++k, strip += height, rhs += columns) {
+  for (std::size_t k = 0; k < depth; ++k, strip += height, rhs += columns, ahead.next += ahead.step) {
+    hwy::Prefetch(ahead.next);
     ((sum[kSum] = hn::MulAdd(hn::Load(d, strip + kSum % vectors * lanes), hn::Set(d, rhs[kSum / vectors]), sum[kSum])),
      ...);
   }
@@ -50,10 +59,11 @@ HWY_INLINE void multiply_strip(const T* HWY_RESTRICT strip, std::size_t height, 
 
 template <std::size_t kVectors, class T>
 HWY_INLINE void multiply_strip_columns(const T* strip, std::size_t height, std::size_t depth, const T* rhs,
-                                       std::size_t columns, T* sums) {
+                                       std::size_t columns, T* sums, Ahead ahead) {
   const auto some = [&](auto count, std::size_t first) HWY_ATTR {
-    multiply_strip<count>(strip, height, depth, rhs + first, columns, sums + first * kTile,
+    multiply_strip<count>(strip, height, depth, rhs + first, columns, sums + first * kTile, ahead,
                           std::make_index_sequence<kVectors * count>());
+    ahead.next += depth * ahead.step;
   };
   std::size_t first = 0;
   for (; first + kColumns <= columns; first += kColumns) some(std::integral_constant<std::size_t, kColumns>(), first);
@@ -64,15 +74,15 @@ HWY_INLINE void multiply_strip_columns(const T* strip, std::size_t height, std::
 /// kDepth or fewer columns of the tile times all right-hand sides.
 template <class T>
 HWY_INLINE void multiply_slice(const T* slice, std::size_t height, std::size_t depth, const T* rhs, std::size_t columns,
-                               T* sums) {
+                               T* sums, Ahead ahead) {
   constexpr std::size_t lanes = hn::MaxLanes(hn::CappedTag<T, kTileStep>());
   std::size_t row = 0;
   for (; row + 3 * lanes <= height; row += 3 * lanes)
-    multiply_strip_columns<3>(slice + row, height, depth, rhs, columns, sums + row);
+    multiply_strip_columns<3>(slice + row, height, depth, rhs, columns, sums + row, ahead);
   for (; row + 2 * lanes <= height; row += 2 * lanes)
-    multiply_strip_columns<2>(slice + row, height, depth, rhs, columns, sums + row);
+    multiply_strip_columns<2>(slice + row, height, depth, rhs, columns, sums + row, ahead);
   for (; row + lanes <= height; row += lanes)
-    multiply_strip_columns<1>(slice + row, height, depth, rhs, columns, sums + row);
+    multiply_strip_columns<1>(slice + row, height, depth, rhs, columns, sums + row, ahead);
 }
 
 /// A tile as it lies in memory, slice by slice.
@@ -83,6 +93,8 @@ class FullTile {
   HWY_INLINE const T* next_slice(std::size_t height, std::size_t depth) {
     return std::exchange(next_, next_ + height * depth);
   }
+  const char* next() const { return reinterpret_cast<const char*>(next_); }
+  static std::size_t column_bytes(std::size_t height) { return height * sizeof(T); }
 
  private:
   const T* next_;
@@ -107,6 +119,8 @@ class UnpackedTile {
     next_.scales += depth;
     return slice_;
   }
+  const char* next() const { return reinterpret_cast<const char*>(next_.numbers); }
+  static std::size_t column_bytes(std::size_t height) { return height * sizeof(std::int16_t); }
 
  private:
   PackedTile next_;
@@ -121,7 +135,9 @@ HWY_INLINE void multiply(Tile tile, std::size_t height, std::span<const RowRange
   for (const RowRange<T>& range : ranges) {
     for (std::size_t done = 0; done < range.length; done += kDepth) {
       const std::size_t depth = std::min(kDepth, range.length - done);
-      multiply_slice(tile.next_slice(height, depth), height, depth, range.first + done * columns, columns, sums);
+      const T* slice = tile.next_slice(height, depth);
+      const Ahead ahead{tile.next(), tile.column_bytes(height) / std::max<std::size_t>(1, columns / kColumns)};
+      multiply_slice(slice, height, depth, range.first + done * columns, columns, sums, ahead);
     }
   }
   for (std::size_t r = 0; r < height; ++r) {
