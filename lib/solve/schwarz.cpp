@@ -14,7 +14,7 @@ namespace {
 
 constexpr int components = 3;
 constexpr double overlap_in_edges = 2;
-constexpr std::size_t most_places = 256;  ///< of a leaf and its surroundings
+constexpr std::size_t most_places = 128;  ///< of a leaf and its surroundings
 
 /// Finds what is around a leaf.
 class Surroundings {
