@@ -77,7 +77,7 @@ struct ResponseModel::State {
     Stopwatch watch;
     solver = make_iterative_solver(
         mesh, collocation, B, IterativeOptions::for_tolerance(compressed_to, mesh.vertex_count()), options.progress);
-    answers = solver->answers_to_defects();
+    answers.resize(0, 0);
     summary.assemble_seconds += watch.lap();
   }
 
@@ -141,7 +141,7 @@ struct ResponseModel::State {
     }
     SolveSummary ended;
     report(options.progress, "solve", 0);
-    const Eigen::MatrixXd Y = solver->solve(G, &ended);
+    const Eigen::MatrixXd Y = solve_with_defects(G, ended);
     const Eigen::MatrixXd L = B.transpose() * Y;
     const Eigen::MatrixXd X = Y - B * L;
     for (std::size_t k = 0; k < made.size(); ++k) {
@@ -154,6 +154,17 @@ struct ResponseModel::State {
     summary.residual = std::max(summary.residual, ended.residual);
     summary.solve_seconds += watch.lap();
     return made;
+  }
+
+  /// The first time on a compressed H, random defects are solved for beside G.
+  Eigen::MatrixXd solve_with_defects(const Eigen::MatrixXd& G, SolveSummary& ended) {
+    if (!compressed() || answers.size() > 0) return solver->solve(G, &ended);
+    const Eigen::MatrixXd defects = solver->random_defects();
+    Eigen::MatrixXd both(G.rows(), G.cols() + defects.cols());
+    both << G, defects;
+    const Eigen::MatrixXd Y = solver->solve(both, &ended);
+    answers = Y.rightCols(defects.cols());
+    return Y.leftCols(G.cols());
   }
 
   Points positions() const {

@@ -33,9 +33,10 @@ class NeumannSolver {
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary = nullptr) const = 0;
   /// H times V, as the solver has it.
   virtual Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const = 0;
-  /// Compressed: the displacements (3N by some) that random defects of size 1 would cause, alike within a leaf of the
-  /// tree as those of compression are. They tell what the defects that are left may do. Nothing for a dense solver.
-  virtual Eigen::MatrixXd answers_to_defects() const { return {}; }
+  /// Compressed: right-hand sides (3N by some) that are random defects of each vertex's equations, solved for its own
+  /// displacement, of size 1 and alike within a leaf of the tree as those of compression are. Their solutions tell what
+  /// the defects that are left may do. Nothing for a dense solver.
+  virtual Eigen::MatrixXd random_defects() const { return {}; }
 };
 
 /// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that
