@@ -93,6 +93,13 @@ inline void add_product(const double* V, const RowMajorMatrix& S, Eigen::Index r
   if (p > 0 && q > 0) dgemm_("N", "N", &q, &m, &p, &one, S.data(), &q, V, &p, &one, W, &q);
 }
 
+inline void add_product(const float* V, const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& S,
+                        Eigen::Index rows, float* W) {
+  const int p = static_cast<int>(S.rows()), q = static_cast<int>(S.cols()), m = static_cast<int>(rows);
+  const float one = 1;
+  if (p > 0 && q > 0) sgemm_("N", "N", &q, &m, &p, &one, S.data(), &q, V, &p, &one, W, &q);
+}
+
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd>;
 
 /// C = A^T B; A and B without gaps between columns.

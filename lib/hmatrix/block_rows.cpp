@@ -68,27 +68,54 @@ void BlockRows<T>::get_column(std::size_t row, Index first, Index k, T* values) 
   for (std::size_t r = 0; r < height; ++r) values[r] = packed_.data()[offset + r] * scale;
 }
 
+/// Consecutive columns of the tile that begins with row `first`, from `column` on.
 template <class T>
-void BlockRows<T>::multiply_row(const BlockRow& row, Block& work) const {
-  thread_local std::vector<RowRange<T>> ranges;
-  ranges.clear();
-  for (const WorkRange& source : row.sources) {
-    ranges.push_back({work.data() + source.first * work.cols(), static_cast<std::size_t>(source.length)});
-  }
-  const std::span<const RowRange<T>> sources = ranges;
-  const std::size_t columns = static_cast<std::size_t>(work.cols());
-  for (Index first = 0; first < row.out.length; first += tile_height) {
-    const std::size_t height = static_cast<std::size_t>(height_of(row, first)), offset = column_offset(row, first, 0);
-    T* out = work.data() + (row.out.first + first) * work.cols();
-    if constexpr (std::is_same_v<T, float>) {
-      if (row.packed) {
-        const PackedTile tile{packed_.data() + offset, scales_.data() + scale_index(row, first, 0)};
-        multiply_tile(tile, height, sources, columns, out);
-        continue;
-      }
+void BlockRows<T>::multiply_tile_of(const BlockRow& row, Index first, Index column, std::span<const RowRange<T>> ranges,
+                                    Index columns, T* out) const {
+  const std::size_t height = static_cast<std::size_t>(height_of(row, first)),
+                    offset = column_offset(row, first, column);
+  if constexpr (std::is_same_v<T, float>) {
+    if (row.packed) {
+      const PackedTile tile{packed_.data() + offset, scales_.data() + scale_index(row, first, column)};
+      multiply_tile(tile, height, ranges, static_cast<std::size_t>(columns), out);
+      return;
     }
-    multiply_tile(numbers_.data() + offset, height, sources, columns, out);
   }
+  multiply_tile(numbers_.data() + offset, height, ranges, static_cast<std::size_t>(columns), out);
+}
+
+template <class T>
+template <class Wanted>
+bool BlockRows<T>::multiply_row(const BlockRow& row, Block& work, const Wanted& wanted) const {
+  struct Run {  // of sources that are wanted, one after the other
+    Index column;
+    std::size_t first, count;
+  };
+  thread_local std::vector<RowRange<T>> ranges;
+  thread_local std::vector<Run> runs;
+  ranges.clear();
+  runs.clear();
+  Index column = 0, end = -1;
+  for (const WorkRange& source : row.sources) {
+    if (wanted(source)) {
+      if (column != end) runs.push_back({column, ranges.size(), 0});
+      ranges.push_back({work.data() + source.first * work.cols(), static_cast<std::size_t>(source.length)});
+      ++runs.back().count;
+      end = column + source.length;
+    }
+    column += source.length;
+  }
+  Block part(tile_height, runs.size() > 1 ? work.cols() : 0);
+  for (Index first = 0; first < row.out.length; first += tile_height) {
+    const Index height = height_of(row, first);
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const auto sources = std::span<const RowRange<T>>(ranges).subspan(runs[k].first, runs[k].count);
+      T* out = work.row(row.out.first + first).data();
+      multiply_tile_of(row, first, runs[k].column, sources, work.cols(), k == 0 ? out : part.data());
+      if (k > 0) work.middleRows(row.out.first + first, height) += part.topRows(height);
+    }
+  }
+  return !runs.empty();
 }
 
 template <class T>
@@ -97,7 +124,15 @@ void BlockRows<T>::run(Block& work) const {
   for (std::size_t s = 0; s < stages_.size(); ++s) {
     const std::size_t last = s + 1 < stages_.size() ? stages_[s + 1] : rows_.size();
 #pragma omp for schedule(dynamic, 1)
-    for (std::size_t k = stages_[s]; k < last; ++k) multiply_row(rows_[k], work);
+    for (std::size_t k = stages_[s]; k < last; ++k) multiply_row(rows_[k], work, [](const WorkRange&) { return true; });
+  }
+}
+
+template <class T>
+void BlockRows<T>::run_sparse(Block& work, std::vector<char>& filled) const {
+  const auto is_filled = [&](const WorkRange& range) -> char& { return filled[range.first / Index(kTileStep)]; };
+  for (const BlockRow& row : rows_) {
+    if (multiply_row(row, work, is_filled)) is_filled(row.out) = true;
   }
 }
 

@@ -56,6 +56,9 @@ class BlockRows {
   /// Runs the schedule over a workspace (rows by at most kMostColumns, row-major). The same bits for any number of
   /// threads.
   void run(Block& work) const;
+  /// The same by one thread, for a workspace that is zero but for ranges whose first row / kTileStep is `filled`;
+  /// nothing else is read or multiplied. What is written is filled from then on.
+  void run_sparse(Block& work, std::vector<char>& filled) const;
 
   std::size_t size() const { return rows_.size(); }
   std::size_t numbers() const { return numbers_.size() + packed_.size(); }
@@ -64,7 +67,11 @@ class BlockRows {
   static std::size_t bytes(const BlockRow& row);
 
  private:
-  void multiply_row(const BlockRow& row, Block& work) const;
+  /// From the sources that are wanted; false where there are none.
+  template <class Wanted>
+  bool multiply_row(const BlockRow& row, Block& work, const Wanted& wanted) const;
+  void multiply_tile_of(const BlockRow& row, Index first, Index column, std::span<const RowRange<T>> ranges,
+                        Index columns, T* out) const;
 
   std::vector<BlockRow> rows_;
   std::vector<std::size_t> stages_;  ///< first row of each

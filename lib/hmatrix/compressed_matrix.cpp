@@ -362,13 +362,34 @@ Eigen::MatrixXd CompressedMatrix<T>::from_tree(const VectorBlock& vectors) const
 template <class T>
 void CompressedMatrix<T>::multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const {
   if (work.rows() != work_rows_ || work.cols() != X.cols()) work.resize(work_rows_, X.cols());
-  Y.resize(rows_, X.cols());
-  const Index places = Index(diagonal_.size()), panel_rows = components * Index(kPanel);
+  const Index panel_rows = components * Index(kPanel);
 #pragma omp parallel for schedule(static)
   for (Index row = 0; row < rows_; row += panel_rows) {
     work.middleRows(row, panel_rows) = X.middleRows(row, panel_rows).template cast<T>();
   }
   schedule_.run(work);
+  finish_product(X, work, Y);
+}
+
+template <class T>
+void CompressedMatrix<T>::multiply_sparse(const VectorBlock& X, VectorBlock& Y, Block& work) const {
+  if (work.rows() != work_rows_ || work.cols() != X.cols()) work.resize(work_rows_, X.cols());
+  std::vector<char> filled(static_cast<std::size_t>(work_rows_) / kTileStep, false);
+  for (const std::int32_t leaf : tree_.leaves()) {
+    const WorkRange dofs = dofs_of(tree_.clusters()[leaf], components);
+    if ((X.middleRows(dofs.first, dofs.length).array() == 0).all()) continue;
+    work.middleRows(dofs.first, dofs.length) = X.middleRows(dofs.first, dofs.length).template cast<T>();
+    filled[dofs.first / Index(kTileStep)] = true;
+  }
+  work.bottomRows(rows_).setZero();
+  schedule_.run_sparse(work, filled);
+  finish_product(X, work, Y);
+}
+
+template <class T>
+void CompressedMatrix<T>::finish_product(const VectorBlock& X, const Block& work, VectorBlock& Y) const {
+  Y.resize(rows_, X.cols());
+  const Index places = Index(diagonal_.size()), panel_rows = components * Index(kPanel);
 #pragma omp parallel for schedule(static)
   for (Index first = 0; first < places; first += Index(kPanel)) {
     const Index row = first * components;

@@ -58,6 +58,9 @@ class CompressedMatrix {
 
   /// Y = H X in the tree's order, at most kMostColumns columns. `work` is scratch space that is kept.
   void multiply(const VectorBlock& X, VectorBlock& Y, Block& work) const;
+  /// The same by one thread, to be called by several at once, for an X that is zero in most leaves: what would multiply
+  /// zeros is left out.
+  void multiply_sparse(const VectorBlock& X, VectorBlock& Y, Block& work) const;
 
   /// Of the rows that are kept as they are.
   const std::vector<std::int32_t>& exact_places() const { return exact_places_; }
@@ -89,7 +92,8 @@ class CompressedMatrix {
   void fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf);
   void set_diagonal();
   void keep_exact_rows(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation);
-  /// Their part of Y = H X.
+  /// Y from the workspace, the diagonal and the exact rows.
+  void finish_product(const VectorBlock& X, const Block& work, VectorBlock& Y) const;
   void multiply_exact_rows(const VectorBlock& X, VectorBlock& Y) const;
   /// Where the neighbour's columns begin in the leaf's block row; -1 where it is none.
   Index near_column(std::int32_t leaf, std::int32_t neighbour) const;

@@ -5,42 +5,53 @@
 
 #include <Eigen/LU>
 
-#include <skinbem/hmatrix/cluster_tree.hpp>
+#include <skinbem/hmatrix/compressed_matrix.hpp>
 #include <skinbem/solve/block_gmres.hpp>
 
 namespace skinbem {
 
-/// The coarse level of a preconditioner: the rigid motions of some parts of the body, each by itself, on which A is
-/// inverted. With M a preconditioner of neighbourhoods, Z the motions and E = Z^T A Z,
+/// Vertices nearest, in edges to walk, to one of at most `count` that are as far apart as can be: ends of limbs,
+/// fingers and toes come first, so that each is a part of its own.
+std::vector<std::vector<std::int32_t>> parts_of_skin(const TriangleMesh& mesh, std::size_t count);
+
+/// The coarse level of a preconditioner: the rigid motions of some parts of the body, each by itself, on which
+/// A = H + B B^T is inverted. With M a preconditioner of neighbourhoods, Z the motions and E = Z^T A Z,
 ///   M (I - A Z E^-1 Z^T) + Z E^-1 Z^T
 /// bends a limb as easily as M alone moves a patch of its skin. (A-DEF1 of Tang, Nabben, Vuik, Erlangga, Comparison of
 /// two-level preconditioners, J. Sci. Comput. 39, 2009.)
 class CoarseCorrection {
  public:
-  /// Parts of about equal size, six motions each: what A takes at once.
-  static constexpr std::size_t default_parts = 8;
+  /// More for a finer skin, of which Schwarz's neighbourhoods cover less.
+  static std::size_t parts_for(Index vertices);
 
-  /// One product with A, which keeps the tree's order of vectors of `rows` rows. Throws Error(numerical) where E is
-  /// singular.
-  CoarseCorrection(const TriangleMesh& mesh, const ClusterTree& tree, Index rows, const BlockOperator& A,
-                   std::size_t parts = default_parts);
+  /// B in the tree's order. Throws Error(numerical) where E is singular.
+  template <class T>
+  CoarseCorrection(const TriangleMesh& mesh, const CompressedMatrix<T>& H, const VectorBlock& B, std::size_t parts);
 
   /// out = Z E^-1 Z^T in; what A makes of it is taken from `in`.
   void apply(VectorBlock& in, VectorBlock& out) const;
 
  private:
+  using SingleRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Part {
-    Index first;    ///< row
-    VectorBlock Z;  ///< its rows by 6, orthonormal columns
+    std::vector<Index> rows;  ///< in the tree's order
+    VectorBlock Z;            ///< #rows by 6, orthonormal columns
   };
   Index width() const { return 6 * Index(parts_.size()); }
-  /// Z^T V and Z S.
+  void add_part(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
+                const std::vector<std::int32_t>& places);
+  /// Z^T V and Z S; the latter into rows of parts only.
   Eigen::MatrixXd restrict_to_parts(const VectorBlock& V) const;
   void prolong(const Eigen::MatrixXd& S, VectorBlock& V) const;
 
   std::vector<Part> parts_;
-  VectorBlock AZ_;
+  SingleRows AZ_;
   Eigen::PartialPivLU<Eigen::MatrixXd> E_;
 };
+
+extern template CoarseCorrection::CoarseCorrection(const TriangleMesh&, const CompressedMatrix<float>&,
+                                                   const VectorBlock&, std::size_t);
+extern template CoarseCorrection::CoarseCorrection(const TriangleMesh&, const CompressedMatrix<double>&,
+                                                   const VectorBlock&, std::size_t);
 
 }  // namespace skinbem

@@ -25,7 +25,7 @@ class CompressedSolver final : public NeumannSolver {
         sample_(collocation, random_vertices(mesh.vertex_count(), sampled_vertices)),
         rigid_(B),
         B_(H_.to_tree(B)),
-        coarse_(mesh, H_.tree(), H_.rows(), system()),
+        coarse_(mesh, H_, B_, CoarseCorrection::parts_for(mesh.vertex_count())),
         gmres_{options.residual},
         progress_(progress) {
     for (const Mat3& block : H_.diagonal()) inverse_diagonal_.push_back(block.inverse());
@@ -75,10 +75,10 @@ class CompressedSolver final : public NeumannSolver {
   }
 
   Eigen::MatrixXd random_defects() const override {
-    constexpr Index probes = 3;
+    constexpr int probes = 3;
     const std::vector<std::int32_t>& order = H_.tree().order();
     Eigen::MatrixXd defects(rigid_.rows(), probes);
-    Eigen::Matrix<double, 3, probes> signs = {};
+    Eigen::Matrix<double, 3, probes> signs = Eigen::Matrix<double, 3, probes>::Zero();
     std::minstd_rand random;
     for (std::size_t place = 0; place < order.size(); ++place) {
       if (place % ClusterTree::leaf_size == 0) {

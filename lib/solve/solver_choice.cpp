@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include <skinbem/solve/coarse_correction.hpp>
+
 namespace skinbem {
 namespace {
 
@@ -29,8 +31,8 @@ SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, dou
   const double blocks_of_the_basis = 4 * digits, columns = 18;
   const double schwarz = 3 * n * 3 * 128 * 4;
   const double vectors = 3 * n * 8 * columns * (blocks_of_the_basis + 8);
-  const double rows = 3 * n * 8 * 3 * 16;         // of the sample
-  const double coarse = 3 * n * 8 * 2 * 48;       // Z and A Z
+  const double rows = 3 * n * 8 * 3 * 16;  // of the sample
+  const double coarse = 3 * n * 4 * 6 * static_cast<double>(CoarseCorrection::parts_for(mesh.vertex_count()));  // A Z
   const double bases = 3 * n * 8 * 2 * 2 * 77.0;  // in double while they are made: rows and columns, leaves and above
   const double number_bytes = options.single ? 4 : 8;
   return {Solver::hmatrix, seconds_per_vertex * n / threads,

@@ -125,6 +125,24 @@ TEST_P(Compressed, NearEntriesAreTheDenseMatrixs) {
   }
 }
 
+/// For vectors that are zero but around one place, which leaves most blocks out.
+TEST(CompressedMatrix, SparseProductIsTheSame) {
+  const TriangleMesh mesh = leg();
+  const Collocation<Kelvin<double>> collocation(mesh, {kPoisson, 1.0}, {1e-4});
+  CompressionOptions options;
+  options.packed = true;
+  const CompressedMatrix<float> H(mesh, collocation, options);
+  Eigen::MatrixXd V = Eigen::MatrixXd::Zero(3 * mesh.vertex_count(), 6);
+  for (const std::int32_t v : {0, 100, 101, 102}) V.middleRows<3>(3 * v).setRandom();
+  VectorBlock Y;
+  CompressedMatrix<float>::Block work;
+  H.multiply_sparse(H.to_tree(V), Y, work);
+  const Eigen::MatrixXd expected = product(H, V);
+  EXPECT_LE((H.from_tree(Y) - expected).norm(), tolerance::compressed_f32 * expected.norm());
+  H.multiply_sparse(H.to_tree(Eigen::MatrixXd::Zero(V.rows(), 6)), Y, work);
+  EXPECT_EQ(Y.norm(), 0);
+}
+
 TEST(CompressedMatrix, KeepsTheRowsOfANeedlesTip) {
   const TriangleMesh mesh = spiked_sphere(4, 6);
   const Collocation<Kelvin<double>> collocation(mesh, {kPoisson, 1.0}, {1e-6});

@@ -87,14 +87,31 @@ INSTANTIATE_TEST_SUITE_P(Bodies, Schwarz,
                                            Body{"torus", [] { return torus(1, 0.4, 32, 16); }}),
                          [](const auto& body) { return body.param.name; });
 
+/// Every vertex in one part, the first of which is the end of a limb; more parts than vertices are as many as vertices.
+TEST(Coarse, PartsAreLimbs) {
+  const TriangleMesh body = slender_ellipsoid(3);
+  const auto parts = parts_of_skin(body, 5);
+  ASSERT_EQ(parts.size(), 5u);
+  std::vector<int> times(static_cast<std::size_t>(body.vertex_count()));
+  for (const auto& part : parts) {
+    EXPECT_GT(10 * Index(part.size()), body.vertex_count());
+    for (const std::int32_t v : part) ++times[static_cast<std::size_t>(v)];
+  }
+  EXPECT_EQ(times, std::vector<int>(times.size(), 1));
+  Index axis = 0;
+  (body.vertices.colwise().maxCoeff() - body.vertices.colwise().minCoeff()).maxCoeff(&axis);
+  for (const std::int32_t v : parts.front()) {  // all on one side of the middle
+    EXPECT_GT(body.vertices(v, axis) * body.vertices(parts.front().front(), axis), 0) << v;
+  }
+  EXPECT_EQ(parts_of_skin(tetrahedron(), 9).size(), 4u);
+}
+
 TEST(Coarse, InvertsAOnRigidMotionsOfParts) {
   const CompressedEquations compressed(slender_ellipsoid(3));
-  const auto& tree = compressed.H.tree();
-  const CoarseCorrection coarse(compressed.equations.mesh, tree, compressed.H.rows(), compressed.A, 2);
-  Eigen::MatrixXd motion = Eigen::MatrixXd::Zero(compressed.equations.B.rows(), 6);  // of the first half of the body
-  const Cluster& half = tree.clusters()[tree.clusters()[0].children[0]];
-  for (std::int32_t k = half.begin; k < half.end; ++k) {
-    const Index v = tree.order()[k];
+  const CoarseCorrection coarse(compressed.equations.mesh, compressed.H, compressed.B, 2);
+  Eigen::MatrixXd motion = Eigen::MatrixXd::Zero(compressed.equations.B.rows(), 6);  // of one half of the body
+  const auto parts = parts_of_skin(compressed.equations.mesh, 2);
+  for (const std::int32_t v : parts.front()) {
     motion.middleRows<3>(3 * v) = compressed.equations.B.middleRows<3>(3 * v);
   }
   const VectorBlock expected = compressed.H.to_tree(motion);
@@ -108,7 +125,8 @@ TEST(Coarse, InvertsAOnRigidMotionsOfParts) {
 
 TEST(Coarse, OneLoadOnASlenderBodyTakesFewIterations) {
   const CompressedEquations compressed(slender_ellipsoid(4));
-  const CoarseCorrection coarse(compressed.equations.mesh, compressed.H.tree(), compressed.H.rows(), compressed.A);
+  const CoarseCorrection coarse(compressed.equations.mesh, compressed.H, compressed.B,
+                                CoarseCorrection::parts_for(compressed.equations.mesh.vertex_count()));
   const GmresSummary schwarz_alone =
       compressed.solve([&](const VectorBlock& in, VectorBlock& out) { compressed.schwarz.apply(in, out); }, 1);
   const GmresSummary both = compressed.solve(
