@@ -155,8 +155,8 @@ IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertice
   const double levels = std::pow(std::max(1.0, double(vertices) / 1e4), -0.25);  // of the tree, whose errors add up
   options.compression.tolerance = tolerance * levels / (tolerance >= 1e-4 ? 4 : 5);
   options.compression.samples = tolerance >= 1e-4 ? 192 : tolerance >= 1e-5 ? 384 : 640;
-  options.residual = std::min(1e-3, 2 * tolerance);
   options.single = tolerance >= 2e-5;
+  options.residual = std::min(1e-3, options.single ? 2 * tolerance : tolerance);
   options.compression.packed = tolerance >= 1e-4;
   return options;
 }

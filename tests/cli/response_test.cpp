@@ -103,7 +103,7 @@ TEST_F(Response, JsonIsOneObjectWithTheKeysOfTheContract) {
     EXPECT_EQ(report["solver"], std::string(solver) == "hmatrix" ? "hmatrix" : "dense");
     EXPECT_EQ(report["tolerance"], 1e-6);
     EXPECT_EQ(report["threads"], 1);
-    EXPECT_LE(report["estimated_error"], 3e-6);
+    EXPECT_LE(report["estimated_error"], 2e-6);
   }
 }
 
