@@ -44,7 +44,7 @@ void BlockRows<T>::allocate() {
 }
 
 template <class T>
-void BlockRows<T>::set_column(std::size_t row, Index first, Index k, const T* values) {
+void BlockRows<T>::set_column(std::size_t row, Index first, Index k, T* values) {
   const BlockRow& b = rows_[row];
   const std::size_t height = static_cast<std::size_t>(height_of(b, first)), offset = column_offset(b, first, k);
   if constexpr (std::is_same_v<T, float>) {
@@ -54,6 +54,7 @@ void BlockRows<T>::set_column(std::size_t row, Index first, Index k, const T* va
     }
   }
   std::copy_n(values, height, numbers_.data() + offset);
+  std::fill_n(values, height, T(0));
 }
 
 template <class T>

@@ -19,6 +19,9 @@ struct WorkRange {
   Index length;
 };
 
+/// The next multiple of `step`.
+inline Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
+
 /// out = A times the stacked `sources`.
 struct BlockRow {
   WorkRange out;  ///< the length a multiple of kTileStep
@@ -49,8 +52,9 @@ class BlockRows {
   void allocate();
 
   const BlockRow& row(std::size_t k) const { return rows_[k]; }
-  /// Column k of the tile that begins with row `first` of the block row: as many values as the tile has rows.
-  void set_column(std::size_t row, Index first, Index k, const T* values);
+  /// Column k of the tile that begins with row `first` of the block row: as many values as the tile has rows, which
+  /// become what rounding loses of them.
+  void set_column(std::size_t row, Index first, Index k, T* values);
   void get_column(std::size_t row, Index first, Index k, T* values) const;
 
   /// Runs the schedule over a workspace (rows by at most kMostColumns, row-major). The same bits for any number of

@@ -12,23 +12,14 @@
 namespace skinbem {
 namespace {
 
-constexpr double bases_share = 0.6;                                        ///< of the time
 constexpr std::int32_t most_packed_vertices = 3 * ClusterTree::leaf_size;  ///< of a cluster
 
-Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
+}  // namespace
 
-/// Degrees of freedom of a leaf, filled up to whole panels.
-WorkRange dofs_of(const Cluster& leaf, int components) {
+template <class T>
+WorkRange CompressedMatrix<T>::dofs_of(const Cluster& leaf) {
   return {Index(leaf.begin) * components, round_up(leaf.size(), kPanel) * components};
 }
-
-std::vector<PointList> points_of(const std::vector<ClusterBasis>& bases) {
-  std::vector<PointList> lists;
-  for (const ClusterBasis& basis : bases) lists.emplace_back(basis.skeleton);
-  return lists;
-}
-
-}  // namespace
 
 template <class T>
 CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
@@ -110,7 +101,7 @@ void CompressedMatrix<T>::plan_upwards(const std::vector<WorkRange>& columns) {
       const Cluster& cluster = tree_.clusters()[c];
       std::vector<WorkRange> sources;
       if (cluster.is_leaf()) {
-        sources.push_back(dofs_of(cluster, components));
+        sources.push_back(dofs_of(cluster));
       } else {
         for (const std::int32_t child : cluster.children) sources.push_back(columns[child]);
       }
@@ -144,152 +135,12 @@ void CompressedMatrix<T>::plan_leaves(const std::vector<WorkRange>& rows, Index 
   for (const std::int32_t leaf : tree_.leaves()) {
     std::vector<WorkRange> sources;
     for (const std::int32_t neighbour : partition_.near[leaf]) {
-      sources.push_back(dofs_of(tree_.clusters()[neighbour], components));
+      sources.push_back(dofs_of(tree_.clusters()[neighbour]));
     }
     if (rows[leaf].length > 0) sources.push_back(rows[leaf]);
     const Cluster& cluster = tree_.clusters()[leaf];
-    const WorkRange dofs = dofs_of(cluster, components);
+    const WorkRange dofs = dofs_of(cluster);
     out_[leaf] = add_row({out + dofs.first, dofs.length}, std::move(sources), cluster, summary_.near_bytes);
-  }
-}
-
-namespace {
-
-/// Numbers (row, k) = value(row, k) of a block row from column `first` on; what fills up its rows is zero.
-template <class T, class Value>
-void fill(BlockRows<T>& schedule, std::int32_t block_row, Index first, Index rows, Index columns, const Value& value) {
-  const Index height = schedule.row(block_row).out.length;
-  for (Index tile = 0; tile < height; tile += Index(kTile)) {
-    const Index last = std::min(height, tile + Index(kTile));
-    for (Index k = 0; k < columns; ++k) {
-      T numbers[kTile];
-      for (Index r = tile; r < last; ++r) numbers[r - tile] = r < rows ? T(value(r, k)) : T(0);
-      schedule.set_column(block_row, tile, first + k, numbers);
-    }
-  }
-}
-
-}  // namespace
-
-template <class T>
-void CompressedMatrix<T>::fill_bases(const NestedBases& bases) {
-  const std::int32_t count = std::int32_t(tree_.clusters().size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::int32_t c = 0; c < count; ++c) {
-    if (up_[c] >= 0) {
-      const Eigen::MatrixXd& Q = bases.columns[c].interpolation;
-      fill(schedule_, up_[c], 0, Q.cols(), Q.rows(), [&](Index r, Index k) { return Q(k, r); });
-    }
-    // the part of the parent's row coefficients that belongs to this child
-    const std::int32_t parent = tree_.clusters()[c].parent;
-    if (coupling_[c] >= 0 && parent >= 0 && coupling_[parent] >= 0) {
-      const Eigen::MatrixXd& P = bases.rows[parent].interpolation;
-      const bool second = tree_.clusters()[parent].children[1] == c;
-      const Index begin = second ? P.rows() - Index(bases.rows[c].skeleton.size()) : 0;
-      fill(schedule_, coupling_[c], schedule_.row(coupling_[c]).width - P.cols(), Index(bases.rows[c].skeleton.size()),
-           P.cols(), [&](Index r, Index k) { return P(begin + r, k); });
-    }
-    if (out_[c] >= 0 && coupling_[c] >= 0) {
-      const Eigen::MatrixXd& P = bases.rows[c].interpolation;
-      fill(schedule_, out_[c], schedule_.row(out_[c]).width - P.cols(), P.rows(), P.cols(),
-           [&](Index r, Index k) { return P(r, k); });
-    }
-  }
-}
-
-template <class T>
-void CompressedMatrix<T>::fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel) {
-  const std::vector<PointList> rows = points_of(bases.rows), columns = points_of(bases.columns);
-  const std::int32_t count = std::int32_t(tree_.clusters().size());
-  constexpr std::size_t entries = components * components;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::int32_t c = 0; c < count; ++c) {
-    Index first = 0;
-    const Index rank = Index(bases.rows[c].skeleton.size());
-    std::vector<std::size_t> row_offset(bases.rows[c].skeleton.size());
-    for (const std::int32_t partner : partition_.far[c]) {
-      const std::size_t sources = columns[partner].points.size();
-      const double* values = kernel.values(rows[c].points, columns[partner].points);
-      for (std::size_t r = 0; r < row_offset.size(); ++r) {
-        const std::size_t point = rows[c].of_dof[r];
-        row_offset[r] =
-            (point / kPanel * sources * entries + components * bases.rows[c].skeleton[r].component) * kPanel +
-            point % kPanel;
-      }
-      const std::vector<Dof>& skeleton = bases.columns[partner].skeleton;
-      fill(schedule_, coupling_[c], first, rank, Index(skeleton.size()), [&](Index r, Index k) {
-        return values[row_offset[r] + (columns[partner].of_dof[k] * entries + skeleton[k].component) * kPanel];
-      });
-      first += Index(skeleton.size());
-    }
-  }
-}
-
-template <class T>
-Index CompressedMatrix<T>::near_column(std::int32_t leaf, std::int32_t neighbour) const {
-  Index column = 0;
-  for (const std::int32_t other : partition_.near[leaf]) {
-    if (other == neighbour) return column;
-    column += dofs_of(tree_.clusters()[other], components).length;
-  }
-  return -1;
-}
-
-template <class T>
-void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf) {
-  const Cluster& cluster = tree_.clusters()[leaf];
-  const auto vertices = [&](std::int32_t begin, std::int32_t end) {
-    return std::span(tree_.order()).subspan(begin, end - begin);
-  };
-  const auto& near = partition_.near[leaf];
-  constexpr T zeros[kTile] = {};
-  constexpr std::size_t together = 4;  // leaves at once: their triangles overlap, their entries stay in the cache
-  Index first_column = 0;
-  for (std::size_t first = 0; first < near.size(); first += together) {
-    std::vector<std::int32_t> columns;
-    std::vector<Index> place;  // of each in the block row
-    for (std::size_t n = first; n < std::min(near.size(), first + together); ++n) {
-      const Cluster& neighbour = tree_.clusters()[near[n]];
-      for (std::int32_t k = neighbour.begin; k < neighbour.end; ++k) {
-        columns.push_back(tree_.order()[k]);
-        place.push_back(first_column + tree_row(k - neighbour.begin, 0, components));
-      }
-      const WorkRange dofs = dofs_of(neighbour, components);
-      const bool full = neighbour.size() % std::int32_t(kPanel) == 0;
-      for (Index k = full ? dofs.length : dofs.length - components * Index(kPanel); k < dofs.length; ++k) {
-        for (Index r = 0; r < dofs_of(cluster, components).length; r += Index(kTile)) {
-          schedule_.set_column(out_[leaf], r, first_column + k, zeros);
-        }
-      }
-      first_column += dofs.length;
-    }
-    collocation.for_double_layer_panels(
-        vertices(cluster.begin, cluster.end), columns, [&](std::size_t row, std::size_t, const double* entries) {
-          for (std::size_t c = 0; c < columns.size(); ++c) {
-            for (int j = 0; j < components; ++j) {
-              T numbers[kTile];
-              for (int i = 0; i < components; ++i) {
-                const double* from = entries + (c * components * components + components * i + j) * kPanel;
-                for (std::size_t p = 0; p < kPanel; ++p) numbers[i * kPanel + p] = T(from[p]);
-              }
-              schedule_.set_column(out_[leaf], Index(row) * components, place[c] + j * Index(kPanel), numbers);
-            }
-          }
-        });
-  }
-}
-
-template <class T>
-void CompressedMatrix<T>::fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress) {
-  static_assert(kTile == components * kPanel);
-  const std::int32_t count = std::int32_t(tree_.leaves().size());
-  const std::int32_t batch = 64 + count / 16;  // between two reports
-  for (std::int32_t first = 0; first < count; first += batch) {
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::int32_t k = first; k < std::min(count, first + batch); ++k) {
-      fill_near_leaf(collocation, tree_.leaves()[k]);
-    }
-    report(progress, "compress", bases_share + (1 - bases_share) * std::min(1.0, double(first + batch) / count));
   }
 }
 
@@ -376,7 +227,7 @@ void CompressedMatrix<T>::multiply_sparse(const VectorBlock& X, VectorBlock& Y, 
   if (work.rows() != work_rows_ || work.cols() != X.cols()) work.resize(work_rows_, X.cols());
   std::vector<char> filled(static_cast<std::size_t>(work_rows_) / kTileStep, false);
   for (const std::int32_t leaf : tree_.leaves()) {
-    const WorkRange dofs = dofs_of(tree_.clusters()[leaf], components);
+    const WorkRange dofs = dofs_of(tree_.clusters()[leaf]);
     if ((X.middleRows(dofs.first, dofs.length).array() == 0).all()) continue;
     work.middleRows(dofs.first, dofs.length) = X.middleRows(dofs.first, dofs.length).template cast<T>();
     filled[dofs.first / Index(kTileStep)] = true;

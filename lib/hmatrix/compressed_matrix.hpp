@@ -18,9 +18,9 @@ struct CompressionOptions {
   double tolerance = 1e-3;
   /// Blocks of clusters whose larger diameter is less than eta times their distance are compressed; none for 0, when
   /// the matrix is exact and dense.
-  double eta = 1.5;
+  double eta = 1;
   /// Vertices of a cluster's far field that its bases are made from.
-  Index samples = 192;
+  Index samples = 128;
   /// Blocks of clusters of some leaves' vertices are stored in 16 bits, where the others are in single precision: half
   /// the memory. Their rounding errors differ from vertex to vertex and even out; those of larger clusters would not.
   bool packed = false;
@@ -79,17 +79,24 @@ class CompressedMatrix {
 
  private:
   static constexpr int components = 3;
+  static constexpr double bases_share = 0.6;  ///< of the time
 
+  /// Degrees of freedom of a leaf, filled up to whole panels.
+  static WorkRange dofs_of(const Cluster& leaf);
+
+  // the layout
   void plan(const NestedBases& bases);
   void plan_upwards(const std::vector<WorkRange>& columns);
   void plan_downwards(const std::vector<WorkRange>& columns, const std::vector<WorkRange>& rows);
   void plan_leaves(const std::vector<WorkRange>& rows, Index out);
   /// Its number; `bytes` grows by what it takes.
   std::int32_t add_row(WorkRange out, std::vector<WorkRange> sources, const Cluster& cluster, std::size_t& bytes);
+  // the numbers: compressed_numbers.cpp
   void fill_bases(const NestedBases& bases);
   void fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
   void fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress);
   void fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf);
+  // what is not compressed
   void set_diagonal();
   void keep_exact_rows(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation);
   /// Y from the workspace, the diagonal and the exact rows.

@@ -2,9 +2,7 @@
 #include <skinbem/hmatrix/exact_rows.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <random>
 
 namespace skinbem {
 
@@ -36,20 +34,6 @@ Eigen::MatrixXd ExactRows::pick(const Eigen::MatrixXd& V) const {
     picked.middleRows<3>(3 * Index(k)) = V.middleRows<3>(3 * Index(vertices_[k]));
   }
   return picked;
-}
-
-Eigen::RowVectorXd ExactRows::estimate_norms(const Eigen::MatrixXd& sampled) const {
-  return sampled.colwise().norm() * std::sqrt(double(rows_.cols()) / double(rows_.rows()));
-}
-
-std::vector<std::int32_t> random_vertices(Index vertex_count, std::size_t count) {
-  std::vector<std::int32_t> all(vertex_count);
-  std::iota(all.begin(), all.end(), 0);
-  std::mt19937 generator(1);
-  count = std::min(count, all.size());
-  for (std::size_t k = 0; k < count; ++k) std::swap(all[k], all[k + generator() % (all.size() - k)]);
-  all.resize(count);
-  return all;
 }
 
 }  // namespace skinbem

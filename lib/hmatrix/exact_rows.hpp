@@ -22,15 +22,10 @@ class ExactRows {
   Eigen::MatrixXd multiply(const Eigen::MatrixXd& V) const { return rows_ * V; }
   /// Those rows of V.
   Eigen::MatrixXd pick(const Eigen::MatrixXd& V) const;
-  /// The root mean square of a difference in these rows, taken as that of all: an estimate of each column's norm.
-  Eigen::RowVectorXd estimate_norms(const Eigen::MatrixXd& sampled) const;
 
  private:
   std::vector<std::int32_t> vertices_;
   RowMajorMatrix rows_;
 };
-
-/// Different vertices drawn at random, the same for the same number; all where there are fewer.
-std::vector<std::int32_t> random_vertices(Index vertex_count, std::size_t count);
 
 }  // namespace skinbem

@@ -47,16 +47,22 @@ std::vector<std::vector<std::int32_t>> representatives(const TriangleMesh& mesh,
   return result;
 }
 
-/// Every so many of the samples, so that about `count` are left.
-void add_thinned(const FarSamples& from, std::size_t count, FarSamples& to) {
-  const std::size_t used = std::count_if(from.area_root.begin(), from.area_root.end(), [](double w) { return w > 0; });
-  if (used == 0) return;
-  const std::size_t step = std::max<std::size_t>(1, used / count);
-  const double factor = std::sqrt(static_cast<double>(step));
-  for (std::size_t k = 0; k < used; k += step) {
-    to.places.push_back(from.places[k]);
-    to.area_root.push_back(from.area_root[k] * factor);
+struct Partner {
+  std::int32_t cluster;
+  double angle;  ///< solid, as the cluster that has it sees it
+};
+
+/// Everything that is far from a cluster: its own partners and its ancestors'.
+std::vector<Partner> partners_of(std::int32_t cluster, const std::vector<Cluster>& clusters,
+                                 const BlockPartition& partition, const std::vector<double>& areas) {
+  std::vector<Partner> partners;
+  for (std::int32_t c = cluster; c >= 0; c = clusters[c].parent) {
+    for (const std::int32_t far : partition.far[c]) {
+      const double distance2 = clusters[cluster].points.squaredExteriorDistance(clusters[far].points);
+      partners.push_back({far, areas[far] / distance2});
+    }
   }
+  return partners;
 }
 
 }  // namespace
@@ -117,18 +123,23 @@ std::vector<FarSamples> sample_far_fields(const TriangleMesh& mesh, const Cluste
   }
   std::vector<FarSamples> samples(clusters.size());
   for (std::size_t c = 0; c < clusters.size(); ++c) {
-    const auto& partners = partition.far[c];
     FarSamples& own = samples[c];
-    const std::size_t inherited = static_cast<std::size_t>(samples_per_cluster) / 3;
-    for (const std::int32_t partner : partners) {
-      const std::size_t share = (static_cast<std::size_t>(samples_per_cluster) - inherited) / partners.size() + 1;
-      const std::size_t count = std::min(represent[partner].size(), std::max<std::size_t>(4, share));
-      for (std::size_t k = 0; k < count; ++k) {
-        own.places.push_back(represent[partner][k]);
-        own.area_root.push_back(std::sqrt(areas[partner] / static_cast<double>(count)));
-      }
+    const std::vector<Partner> partners = partners_of(std::int32_t(c), clusters, partition, areas);
+    double angle = 0;
+    for (const Partner& partner : partners) angle += partner.angle;
+    double wanted = 0.5, area = 0;  // of samples, rounded; of the partners that they stand for
+    std::size_t taken = 0;
+    for (const Partner& partner : partners) {
+      wanted += static_cast<double>(samples_per_cluster) * partner.angle / angle;
+      area += areas[partner.cluster];
+      if (static_cast<std::size_t>(wanted) == taken) continue;  // the next one's samples stand for it too
+      const auto& spread = represent[partner.cluster];
+      const std::size_t count = std::min(spread.size(), static_cast<std::size_t>(wanted) - taken);
+      own.places.insert(own.places.end(), spread.begin(), spread.begin() + Index(count));
+      own.area_root.insert(own.area_root.end(), count, std::sqrt(area / static_cast<double>(count)));
+      taken = static_cast<std::size_t>(wanted);
+      area = 0;
     }
-    if (clusters[c].parent >= 0) add_thinned(samples[clusters[c].parent], inherited, own);
     for (std::size_t k = 0; k < own.places.size(); ++k) {  // in turn, or an edge would show one of its faces only
       const auto around = triangles[tree.order()[own.places[k]]];
       own.triangles.push_back(around[k % around.size()]);

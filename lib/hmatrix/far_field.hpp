@@ -39,7 +39,8 @@ struct FarSamples {
   std::vector<double> area_root;
 };
 
-/// For every cluster that has a far field, samples of it: some of every partner of its own, and some of its parent's.
+/// For every cluster that has a far field, about `samples_per_cluster` samples of it: of its own and its ancestors'
+/// partners, of each as many as befit the solid angle that it fills. At most 32 of one.
 std::vector<FarSamples> sample_far_fields(const TriangleMesh& mesh, const ClusterTree& tree,
                                           const BlockPartition& partition, Index samples_per_cluster);
 

@@ -43,7 +43,7 @@ struct NestedBases {
 struct BasisOptions {
   /// Frobenius norm of what the skeleton misses of the sampled far field, relative.
   double tolerance = 1e-3;
-  Index samples = 192;
+  Index samples = 128;
 };
 
 /// Bottom-up, all clusters of a level in parallel; the same bits for any number of threads. Calls done(fraction) after

@@ -160,7 +160,7 @@ void multiply_packed(PackedTile tile, std::size_t height, std::span<const RowRan
   multiply(UnpackedTile(tile), height, ranges, columns, out);
 }
 
-float pack(const float* values, std::size_t height, std::int16_t* numbers) {
+float pack(float* values, std::size_t height, std::int16_t* numbers) {
   const hn::CappedTag<float, kTileStep> d;
   const hn::Rebind<std::int16_t, decltype(d)> d16;
   constexpr float most = 32767;
@@ -171,8 +171,10 @@ float pack(const float* values, std::size_t height, std::int16_t* numbers) {
   const float scale = std::max(hn::GetLane(hn::MaxOfLanes(d, largest)) / most, std::numeric_limits<float>::min());
   const auto inverse = hn::Set(d, 1 / scale);
   for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
-    const auto number = hn::NearestInt(hn::Mul(hn::LoadU(d, values + r), inverse));
+    const auto value = hn::LoadU(d, values + r);
+    const auto number = hn::NearestInt(hn::Mul(value, inverse));
     hn::StoreU(hn::DemoteTo(d16, number), d16, numbers + r);
+    hn::StoreU(hn::NegMulAdd(hn::ConvertTo(d, number), hn::Set(d, scale), value), d, values + r);
   }
   return scale;
 }
@@ -204,7 +206,7 @@ void multiply_tile(PackedTile tile, std::size_t height, std::span<const RowRange
   HWY_DYNAMIC_DISPATCH(multiply_packed)(tile, height, ranges, columns, out);
 }
 
-float pack_column(const float* values, std::size_t height, std::int16_t* numbers) {
+float pack_column(float* values, std::size_t height, std::int16_t* numbers) {
   return HWY_DYNAMIC_DISPATCH(pack)(values, height, numbers);
 }
 

@@ -40,8 +40,8 @@ void multiply_tile(const double* tile, std::size_t height, std::span<const RowRa
 void multiply_tile(PackedTile tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
                    float* out);
 
-/// One column of a PackedTile from `height` values, and its scale: the error is at most half of that, 1/65534 of the
-/// largest value.
-float pack_column(const float* values, std::size_t height, std::int16_t* numbers);
+/// One column of a PackedTile from `height` values, and its scale. The values become what is lost: at most half of the
+/// scale, 1/65534 of the largest value.
+float pack_column(float* values, std::size_t height, std::int16_t* numbers);
 
 }  // namespace skinbem

@@ -6,11 +6,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/base/stopwatch.hpp>
 #include <skinbem/mesh/validate.hpp>
+#include <skinbem/response/compression_error.hpp>
 #include <skinbem/response/landmark_patch.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
 
@@ -42,8 +44,8 @@ struct ResponseModel::State {
   std::vector<Landmark> landmarks;
   ResponseSummary summary;
   double quadrature_error = 0;
-  double compressed_to;     ///< tolerance, where H is compressed
-  Eigen::MatrixXd answers;  ///< to random defects, where H is compressed
+  double compressed_to;                       ///< tolerance, where H is compressed
+  std::optional<CompressionDefects> defects;  ///< where H is compressed, from the first solve on
 
   State(const TriangleMesh& body, const ResponseOptions& given)
       : mesh(body),
@@ -77,7 +79,7 @@ struct ResponseModel::State {
     Stopwatch watch;
     solver = make_iterative_solver(
         mesh, collocation, B, IterativeOptions::for_tolerance(compressed_to, mesh.vertex_count()), options.progress);
-    answers.resize(0, 0);
+    defects.reset();
     summary.assemble_seconds += watch.lap();
   }
 
@@ -102,6 +104,8 @@ struct ResponseModel::State {
   static QuadratureOptions quadrature_for(double tolerance) { return {tolerance}; }
   /// Ratio of the second to the first extent of landmarks: the error of a rotation about their line is its inverse.
   static constexpr double on_a_line = 1e-6;
+  /// On the product of the size of the defects and what such defects do: measured, 0.9 to 2.5 times the error.
+  static constexpr double safety = 1.5;
   /// R errs at least eight times less than the tolerance of H (docs/accuracy.md).
   static constexpr double compressed_quadrature = 0.125;
 
@@ -144,10 +148,11 @@ struct ResponseModel::State {
     const Eigen::MatrixXd Y = solve_with_defects(G, ended);
     const Eigen::MatrixXd L = B.transpose() * Y;
     const Eigen::MatrixXd X = Y - B * L;
+    const Eigen::MatrixXd left = defects ? defects->of(Y, G) : Eigen::MatrixXd(0, G.cols());
     for (std::size_t k = 0; k < made.size(); ++k) {
       made[k].X = X.middleCols<3>(3 * Index(k));
       made[k].L = L.middleCols<3>(3 * Index(k));
-      if (compressed()) made[k].defect = ended.defect.middleCols<3>(3 * Index(k));
+      made[k].defect = left.middleCols<3>(3 * Index(k));
     }
     report(options.progress, "solve", 1);
     summary.iterations = std::max(summary.iterations, ended.iterations);
@@ -158,12 +163,12 @@ struct ResponseModel::State {
 
   /// The first time on a compressed H, random defects are solved for beside G.
   Eigen::MatrixXd solve_with_defects(const Eigen::MatrixXd& G, SolveSummary& ended) {
-    if (!compressed() || answers.size() > 0) return solver->solve(G, &ended);
-    const Eigen::MatrixXd defects = solver->random_defects();
-    Eigen::MatrixXd both(G.rows(), G.cols() + defects.cols());
-    both << G, defects;
+    if (!compressed() || defects) return solver->solve(G, &ended);
+    const Eigen::MatrixXd random = solver->random_defects();
+    Eigen::MatrixXd both(G.rows(), G.cols() + random.cols());
+    both << G, random;
     const Eigen::MatrixXd Y = solver->solve(both, &ended);
-    answers = Y.rightCols(defects.cols());
+    defects.emplace(collocation, B, Y.rightCols(random.cols()));
     return Y.leftCols(G.cols());
   }
 
@@ -216,10 +221,10 @@ struct ResponseModel::State {
   /// After a change of landmarks: estimates the error of R, and compresses less where it is too large. Throws
   /// Error(numerical) where that does not help.
   void settle() {
-    constexpr double allowed = 5, hopeless = 10;  // times the tolerance
+    constexpr double aim = 2, allowed = 5, hopeless = 10;  // times the tolerance
     keep_names_and_estimate();
     while (summary.estimated_error > allowed * options.tolerance &&
-           tighten(std::clamp(options.tolerance / summary.estimated_error, 0.05, 0.2))) {
+           tighten(std::clamp(aim * options.tolerance / summary.estimated_error, 0.05, 0.3))) {
       greens = solve(landmarks);
       summary.estimated_error = estimated_error();
     }
@@ -237,15 +242,14 @@ struct ResponseModel::State {
     if (!compressed()) return quadrature_error + summary.residual;
     if (!enough_landmarks()) return 0;
     const Eigen::MatrixXd X = all_X(), solution = coefficients(X);
-    Eigen::MatrixXd defects(greens.front().defect.rows(), X.cols());
-    for (std::size_t k = 0; k < greens.size(); ++k) defects.middleCols<3>(3 * Index(k)) = greens[k].defect;
-    const Eigen::MatrixXd left = defects * solution.topRows(X.cols());
-    const double defect = left.colwise().norm().maxCoeff() / std::sqrt(double(left.rows()));
+    Eigen::MatrixXd left(greens.front().defect.rows(), X.cols());
+    for (std::size_t k = 0; k < greens.size(); ++k) left.middleCols<3>(3 * Index(k)) = greens[k].defect;
+    const Eigen::MatrixXd& answers = defects->answers();
     const Eigen::MatrixXd coefficients_of_answers = solution * measure(answers);
     const Eigen::MatrixXd held =
         answers - X * coefficients_of_answers.topRows(X.cols()) - B * coefficients_of_answers.bottomRows<6>();
-    constexpr double safety = 2;  // measured without it: 0.5 to 1.7 of the error
-    return options.tolerance * compressed_quadrature + safety * defect * held.cwiseAbs().maxCoeff();
+    return options.tolerance * compressed_quadrature +
+           safety * CompressionDefects::size(left * solution.topRows(X.cols())) * held.cwiseAbs().maxCoeff();
   }
 
   bool enough_landmarks() const { return greens.size() >= 3 && collinear_measure(positions()) >= on_a_line; }

@@ -36,9 +36,9 @@ struct ResponseSummary {
   double solve_seconds = 0;
   double near_share = 0;  ///< of vertex-triangle pairs, integrated in closed form; dense only
   /// Of R, relative to its largest entry. Dense: the smaller of the quadrature tolerance and what rotations show of its
-  /// error, plus the residual. Compressed: what the H that was not compressed leaves of R's equations at vertices drawn
-  /// at random, times the largest displacement that random defects of that size cause where the landmarks are held; 0
-  /// while there are too few landmarks for an R.
+  /// error, plus the residual. Compressed: what the H that was not compressed leaves of R's equations at some vertices
+  /// (CompressionDefects), times the largest displacement that random defects of that size cause where the landmarks are
+  /// held; 0 while there are too few landmarks for an R.
   double estimated_error = 0;
   double residual = 0;  ///< largest of the solves so far
   int iterations = 0;   ///< most of the solves so far
@@ -51,7 +51,7 @@ struct GreensFunctions {
   double load = 0;         ///< Frobenius norm of G_k before scaling
   Eigen::MatrixXd X;       ///< X_k, 3N by 3, rows node-major
   Eigen::MatrixXd L;       ///< L_k, 6 by 3: what the loads lack to be in equilibrium
-  Eigen::MatrixXd defect;  ///< of the equations of some vertices (SolveSummary); nothing for a dense solver
+  Eigen::MatrixXd defect;  ///< of the equations of some vertices (CompressionDefects); nothing for a dense solver
 };
 
 /// A body whose boundary is deformed through landmarks, and everything computed about it so far: the factorised

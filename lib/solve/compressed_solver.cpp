@@ -5,15 +5,12 @@
 #include <random>
 #include <sstream>
 
-#include <skinbem/hmatrix/exact_rows.hpp>
 #include <skinbem/solve/coarse_correction.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/schwarz.hpp>
 
 namespace skinbem {
 namespace {
-
-constexpr std::size_t sampled_vertices = 16;
 
 template <class T>
 class CompressedSolver final : public NeumannSolver {
@@ -22,8 +19,6 @@ class CompressedSolver final : public NeumannSolver {
                    const IterativeOptions& options, const Progress& progress)
       : H_(mesh, collocation, options.compression, progress),
         schwarz_(mesh, H_, B),
-        sample_(collocation, random_vertices(mesh.vertex_count(), sampled_vertices)),
-        rigid_(B),
         B_(H_.to_tree(B)),
         coarse_(mesh, H_, B_, CoarseCorrection::parts_for(mesh.vertex_count())),
         gmres_{options.residual},
@@ -49,15 +44,6 @@ class CompressedSolver final : public NeumannSolver {
               << "the dense solver";
       throw Error(ErrorCode::numerical, message.str());
     }
-    const Eigen::MatrixXd difference =
-        sample_.multiply(Y) + sample_.pick(rigid_ * (rigid_.transpose() * Y)) - sample_.pick(G);
-    const Eigen::RowVectorXd size = G.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
-    ended.sampled_residual = sample_.estimate_norms(difference).cwiseQuotient(size).maxCoeff();
-    ended.defect.resize(difference.rows(), difference.cols());
-    for (std::size_t k = 0; k < sample_.vertices().size(); ++k) {
-      ended.defect.middleRows<3>(3 * Index(k)) =
-          sample_.own_block(k).inverse() * difference.middleRows<3>(3 * Index(k));
-    }
     if (summary) *summary = ended;
     return Y;
   }
@@ -77,7 +63,7 @@ class CompressedSolver final : public NeumannSolver {
   Eigen::MatrixXd random_defects() const override {
     constexpr int probes = 3;
     const std::vector<std::int32_t>& order = H_.tree().order();
-    Eigen::MatrixXd defects(rigid_.rows(), probes);
+    Eigen::MatrixXd defects(3 * Index(order.size()), probes);
     Eigen::Matrix<double, 3, probes> signs = Eigen::Matrix<double, 3, probes>::Zero();
     std::minstd_rand random;
     for (std::size_t place = 0; place < order.size(); ++place) {
@@ -139,9 +125,7 @@ class CompressedSolver final : public NeumannSolver {
 
   CompressedMatrix<T> H_;
   SchwarzPreconditioner schwarz_;
-  ExactRows sample_;
-  Eigen::MatrixXd rigid_;  ///< B in the order of the mesh
-  VectorBlock B_;          ///< in the tree's order
+  VectorBlock B_;  ///< in the tree's order
   CoarseCorrection coarse_;
   std::vector<Mat3> inverse_diagonal_;
   GmresOptions gmres_;
@@ -154,7 +138,7 @@ IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertice
   IterativeOptions options;
   const double levels = std::pow(std::max(1.0, double(vertices) / 1e4), -0.25);  // of the tree, whose errors add up
   options.compression.tolerance = tolerance * levels / (tolerance >= 1e-4 ? 4 : 5);
-  options.compression.samples = tolerance >= 1e-4 ? 192 : tolerance >= 1e-5 ? 384 : 640;
+  options.compression.samples = tolerance >= 1e-4 ? 128 : tolerance >= 1e-5 ? 256 : 448;
   options.single = tolerance >= 2e-5;
   options.residual = std::min(1e-3, options.single ? 2 * tolerance : tolerance);
   options.compression.packed = tolerance >= 1e-4;

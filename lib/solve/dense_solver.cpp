@@ -36,7 +36,6 @@ class DenseSolver final : public NeumannSolver {
               << tolerance_ << "; check the mesh and Poisson's ratio";
       throw Error(ErrorCode::numerical, message.str());
     }
-    ended.sampled_residual = ended.residual;
     if (summary) *summary = ended;
     return Y;
   }

@@ -15,11 +15,6 @@ namespace skinbem {
 struct SolveSummary {
   int iterations = 0;   ///< block iterations, or steps of refinement after a direct factorisation
   double residual = 0;  ///< largest over the columns of |(H + B B^T) y - g| / |g|, computed, not estimated
-  /// The same with the H that was not compressed, from rows drawn at random; the same as residual for a dense H.
-  double sampled_residual = 0;
-  /// Compressed: what the equations of some vertices are left with, each solved for the vertex's own displacement (in
-  /// units of y); 3 #vertices by #columns. The same vertices in every solve of a mesh.
-  Eigen::MatrixXd defect;
 };
 
 /// (H + B B^T)^-1: H the double layer's matrix (3N by 3N, null space the rigid motions), B their orthonormal basis

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include <skinbem/hmatrix/exact_rows.hpp>
 
 #include "meshes.hpp"
@@ -33,23 +31,6 @@ TEST(ExactRows, HaveTheirOwnBlocks) {
   const ExactRows rows(sphere.collocation, {81, 4});
   EXPECT_LE((rows.own_block(0) - sphere.H.block<3, 3>(3 * 81, 3 * 81)).cwiseAbs().maxCoeff(), tolerance::invariance);
   EXPECT_LE((rows.own_block(1) - sphere.H.block<3, 3>(3 * 4, 3 * 4)).cwiseAbs().maxCoeff(), tolerance::invariance);
-}
-
-TEST(RandomVertices, AreDifferentAndTheSameEveryTime) {
-  const std::vector<std::int32_t> drawn = random_vertices(1000, 16);
-  EXPECT_EQ(drawn.size(), 16u);
-  EXPECT_EQ(std::set(drawn.begin(), drawn.end()).size(), 16u);
-  EXPECT_EQ(drawn, random_vertices(1000, 16));
-  EXPECT_NE(drawn, random_vertices(1001, 16));
-}
-
-TEST(ExactRows, OfASmallMeshAreAllOfThem) {
-  const Collocation<Kelvin<double>> collocation(cube(1), {0.3, 1.0});
-  const ExactRows rows(collocation, random_vertices(8, 100));
-  const Eigen::MatrixXd V = Eigen::MatrixXd::Random(24, 2);
-  EXPECT_EQ(rows.pick(V).rows(), 24);
-  // the norm of all is no estimate
-  EXPECT_LE((rows.estimate_norms(rows.pick(V)) - V.colwise().norm()).cwiseAbs().maxCoeff(), tolerance::rounding * 10);
 }
 
 }  // namespace

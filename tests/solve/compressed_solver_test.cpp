@@ -152,10 +152,7 @@ TEST_P(IterativeSolver, SolvesToItsResidualAndReportsIt) {
     const Eigen::MatrixXd Y = equations.solver(requested)->solve(G, &summary);
     EXPECT_GT(summary.iterations, 0);
     EXPECT_LE(summary.residual, allowed);
-    const double actual = equations.true_residual(Y, G);
-    EXPECT_LE(actual, tolerance::compression_in_bending * allowed) << requested;
-    EXPECT_LE(actual, 3 * summary.sampled_residual);
-    EXPECT_GE(actual, summary.sampled_residual / 3);
+    EXPECT_LE(equations.true_residual(Y, G), tolerance::compression_in_bending * allowed) << requested;
   }
 }
 
@@ -198,7 +195,7 @@ TEST(CompressedSolverOf, ZeroLoadGivesZeroAndAResidual) {
   SolveSummary summary;
   const Eigen::MatrixXd Y = equations.solver(1e-4)->solve(G, &summary);
   EXPECT_LE(Y.col(1).norm(), tolerance::rounding_of_sums * Y.col(0).norm());
-  EXPECT_LE(summary.sampled_residual, 2 * equations.options(1e-4).residual);
+  EXPECT_LE(summary.residual, equations.options(1e-4).residual);
 }
 
 TEST(CompressedSolverOf, SolvesANeedleOrSaysWhatItReached) {
@@ -208,7 +205,7 @@ TEST(CompressedSolverOf, SolvesANeedleOrSaysWhatItReached) {
     SolveSummary summary;
     try {
       const Eigen::MatrixXd Y = equations.solver(requested)->solve(G, &summary);
-      EXPECT_LE(equations.true_residual(Y, G), 3 * summary.sampled_residual);
+      EXPECT_LE(equations.true_residual(Y, G), tolerance::compression_in_bending * equations.options(requested).residual);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::numerical);
       EXPECT_NE(std::string(error.what()).find("residual 0.00"), std::string::npos) << error.what();
