@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <skinbem/base/lapack.hpp>
@@ -15,14 +16,17 @@ constexpr Index chunk_rows = 2048;
 
 Index chunk_count(Index rows) { return (rows + chunk_rows - 1) / chunk_rows; }
 
-/// W = Q R with orthonormal columns of Q, as many as W has independent directions (singular values above `negligible`);
-/// W becomes Q. Singular vector QR: Stathopoulos and Wu, SIAM J. Sci. Comput. 23 (2002), twice for orthogonality.
+/// W = Q R with orthonormal columns of Q, as many as W has independent directions (singular values above `negligible`,
+/// and above 1e-7 of the largest); W becomes Q. Singular vector QR: Stathopoulos and Wu, SIAM J. Sci. Comput. 23
+/// (2002), twice for orthogonality.
 Eigen::MatrixXd orthonormalise(VectorBlock& W, double negligible) {
   const Index n = W.cols();
   if (n == 0) return Eigen::MatrixXd(0, 0);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(W, W));
+  // squares below the rounding errors of the largest are noise, and their vectors no directions
+  const double noise = double(n) * std::numeric_limits<double>::epsilon() * eigen.eigenvalues()[n - 1];
   Index kept = 0;
-  while (kept < n && eigen.eigenvalues()[n - 1 - kept] > negligible * negligible) ++kept;
+  while (kept < n && eigen.eigenvalues()[n - 1 - kept] > std::max(negligible * negligible, noise)) ++kept;
   const Eigen::VectorXd sigma = eigen.eigenvalues().tail(kept).cwiseSqrt();
   const Eigen::MatrixXd vectors = eigen.eigenvectors().rightCols(kept);
   VectorBlock Q = VectorBlock::Zero(W.rows(), kept);

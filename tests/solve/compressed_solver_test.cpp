@@ -201,11 +201,14 @@ TEST(CompressedSolverOf, ZeroLoadGivesZeroAndAResidual) {
 TEST(CompressedSolverOf, SolvesANeedleOrSaysWhatItReached) {
   const Equations equations{needle_box(80)};  // bending of 1:20 amplifies the rounding of single precision
   const Eigen::MatrixXd G = equations.loads(4);
+  constexpr double in_bending = 100;  // grows what compression left (measured: 66)
   for (const double requested : {1e-3, 1e-5}) {
+    const double allowed = equations.options(requested).residual;
     SolveSummary summary;
     try {
       const Eigen::MatrixXd Y = equations.solver(requested)->solve(G, &summary);
-      EXPECT_LE(equations.true_residual(Y, G), tolerance::compression_in_bending * equations.options(requested).residual);
+      EXPECT_LE(summary.residual, allowed);
+      EXPECT_LE(equations.true_residual(Y, G), in_bending * allowed);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::numerical);
       EXPECT_NE(std::string(error.what()).find("residual 0.00"), std::string::npos) << error.what();
