@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
 #include <vector>
 
 #include <skinbem/base/error.hpp>
@@ -87,17 +88,17 @@ inline void inner_product(const double* V, const double* W, Eigen::Index rows, R
 }
 
 /// W += V S, all stored by rows; V and W have `rows` of them.
-inline void add_product(const double* V, const RowMajorMatrix& S, Eigen::Index rows, double* W) {
+template <class T>
+void add_product(const T* V, const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& S,
+                 Eigen::Index rows, T* W) {
   const int p = static_cast<int>(S.rows()), q = static_cast<int>(S.cols()), m = static_cast<int>(rows);
-  const double one = 1;
-  if (p > 0 && q > 0) dgemm_("N", "N", &q, &m, &p, &one, S.data(), &q, V, &p, &one, W, &q);
-}
-
-inline void add_product(const float* V, const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& S,
-                        Eigen::Index rows, float* W) {
-  const int p = static_cast<int>(S.rows()), q = static_cast<int>(S.cols()), m = static_cast<int>(rows);
-  const float one = 1;
-  if (p > 0 && q > 0) sgemm_("N", "N", &q, &m, &p, &one, S.data(), &q, V, &p, &one, W, &q);
+  const T one = 1;
+  if (p == 0 || q == 0) return;
+  if constexpr (std::is_same_v<T, float>) {
+    sgemm_("N", "N", &q, &m, &p, &one, S.data(), &q, V, &p, &one, W, &q);
+  } else {
+    dgemm_("N", "N", &q, &m, &p, &one, S.data(), &q, V, &p, &one, W, &q);
+  }
 }
 
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd>;

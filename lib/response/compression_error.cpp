@@ -57,6 +57,7 @@ double CompressionDefects::size(const Eigen::MatrixXd& defects) {
   constexpr double most = 3;  // medians
   double largest = 0;
   std::vector<double> norms(static_cast<std::size_t>(defects.rows()) / 3);
+  if (norms.empty()) return 0;  // every equation is exact
   for (Index c = 0; c < defects.cols(); ++c) {
     for (std::size_t k = 0; k < norms.size(); ++k) norms[k] = defects.col(c).segment<3>(3 * Index(k)).norm();
     const auto middle = norms.begin() + Index(norms.size() / 2);

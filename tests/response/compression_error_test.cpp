@@ -57,6 +57,14 @@ TEST(CompressionDefects, SizeIsARootMeanSquareThatNoVertexRules) {
   EXPECT_NEAR(CompressionDefects::size(defects_with(1e6)), 0.5 * std::sqrt(24.0 / 16), tolerance::rounding);
 }
 
+TEST(CompressionDefects, WithoutMotionThereAreNone) {
+  const TriangleMesh mesh = cube(1);
+  const Eigen::MatrixXd B = rigid_modes(mesh.vertices), none = Eigen::MatrixXd::Zero(B.rows(), 3);
+  const CompressionDefects defects({mesh, {0.45, 1.0}, {1e-4}}, B, none);
+  EXPECT_EQ(defects.of(none, none).rows(), 0);
+  EXPECT_EQ(CompressionDefects::size(defects.of(none, none)), 0);
+}
+
 struct Ellipsoid {
   TriangleMesh mesh = slender_ellipsoid(3);
   Collocation<Kelvin<double>> collocation{mesh, {0.45, 1.0}, {1e-8}};
