@@ -22,8 +22,8 @@ class CompressionDefects {
   CompressionDefects(const Collocation<Kelvin<double>>& collocation, const Eigen::MatrixXd& B, Eigen::MatrixXd answers);
 
   const Eigen::MatrixXd& answers() const { return answers_; }
-  /// What is left of the vertices' equations, each solved for the vertex's own displacement: 3 #vertices by #columns, in
-  /// the unit of Y.
+  /// What is left of the vertices' equations, each solved for the vertex's own displacement: 3 #vertices by #columns,
+  /// in the unit of Y.
   Eigen::MatrixXd of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& G) const;
 
   /// The largest root mean square of a column of such defects. A vertex counts at most as three times their median: one

@@ -37,8 +37,8 @@ struct ResponseSummary {
   double near_share = 0;  ///< of vertex-triangle pairs, integrated in closed form; dense only
   /// Of R, relative to its largest entry. Dense: the smaller of the quadrature tolerance and what rotations show of its
   /// error, plus the residual. Compressed: what the H that was not compressed leaves of R's equations at some vertices
-  /// (CompressionDefects), times the largest displacement that random defects of that size cause where the landmarks are
-  /// held; 0 while there are too few landmarks for an R.
+  /// (CompressionDefects), times the largest displacement that random defects of that size cause where the landmarks
+  /// are held; 0 while there are too few landmarks for an R.
   double estimated_error = 0;
   double residual = 0;  ///< largest of the solves so far
   int iterations = 0;   ///< most of the solves so far
