@@ -22,6 +22,8 @@ class CompressionDefects {
   CompressionDefects(const Collocation<Kelvin<double>>& collocation, const Eigen::MatrixXd& B, Eigen::MatrixXd answers);
 
   const Eigen::MatrixXd& answers() const { return answers_; }
+  /// Those of the same body compressed anew. The vertices stay: defects before and after are comparable.
+  void set_answers(Eigen::MatrixXd answers) { answers_ = std::move(answers); }
   /// What is left of the vertices' equations, each solved for the vertex's own displacement: 3 #vertices by #columns,
   /// in the unit of Y.
   Eigen::MatrixXd of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& G) const;

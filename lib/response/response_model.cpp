@@ -46,6 +46,7 @@ struct ResponseModel::State {
   double quadrature_error = 0;
   double compressed_to;                       ///< tolerance, where H is compressed
   std::optional<CompressionDefects> defects;  ///< where H is compressed, from the first solve on
+  bool answered = false;                      ///< random defects, by this H
 
   State(const TriangleMesh& body, const ResponseOptions& given)
       : mesh(body),
@@ -79,7 +80,7 @@ struct ResponseModel::State {
     Stopwatch watch;
     solver = make_iterative_solver(
         mesh, collocation, B, IterativeOptions::for_tolerance(compressed_to, mesh.vertex_count()), options.progress);
-    defects.reset();
+    answered = false;
     summary.assemble_seconds += watch.lap();
   }
 
@@ -163,12 +164,17 @@ struct ResponseModel::State {
 
   /// The first time on a compressed H, random defects are solved for beside G.
   Eigen::MatrixXd solve_with_defects(const Eigen::MatrixXd& G, SolveSummary& ended) {
-    if (!compressed() || defects) return solver->solve(G, &ended);
+    if (!compressed() || answered) return solver->solve(G, &ended);
     const Eigen::MatrixXd random = solver->random_defects();
     Eigen::MatrixXd both(G.rows(), G.cols() + random.cols());
     both << G, random;
     const Eigen::MatrixXd Y = solver->solve(both, &ended);
-    defects.emplace(collocation, B, Y.rightCols(random.cols()));
+    if (defects) {
+      defects->set_answers(Y.rightCols(random.cols()));
+    } else {
+      defects.emplace(collocation, B, Y.rightCols(random.cols()));
+    }
+    answered = true;
     return Y.leftCols(G.cols());
   }
 
