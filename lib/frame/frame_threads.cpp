@@ -2,6 +2,7 @@
 #include <skinbem/frame/frame_threads.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -24,11 +25,17 @@ using Clock = std::chrono::steady_clock;
 
 /// A piece is about this many bytes: some microseconds, so that the wait at the end is short.
 constexpr std::size_t kPieceBytes = 64 * 1024;
-/// Share of the time that late helpers may cost, and the wait that counts as late.
-constexpr double kLateShare = 0.1;
-constexpr double kLateSeconds = 20e-6;
-/// One frame in so many is evaluated alone, to know what help gains.
-constexpr std::uint32_t kFramesToCompare = 64;
+/// Share of the time that help may cost where it costs more than it gained before.
+constexpr double kLostShare = 0.1;
+/// What was gained counts up to this many frames, so that helpers that begin to cost are soon left alone.
+constexpr double kMostGained = 10;
+/// The first frames of a model, and one in so many later on, are evaluated alone, to know what help gains.
+constexpr std::uint32_t kFramesToKnow = 4;
+constexpr std::uint32_t kFramesToCompare = 512;
+/// A helper looks for the next frame all the time at first, then at intervals of a share of the time without one: to
+/// wake costs, on a busy machine the caller too.
+constexpr std::chrono::microseconds kSpinning{50}, kShortestNap{50}, kLongestNap{1000};
+constexpr int kNapShare = 4;
 /// No model is as large.
 constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
@@ -52,6 +59,20 @@ struct Ticket {
   }
 };
 
+/// How long frames of a model take without help.
+struct FramesAlone {
+  std::size_t bytes = 0;  // of the model; two of the same size are taken for one
+  std::uint32_t frames = 0;
+  double seconds = 0;
+
+  /// The shortest time counts at once, longer ones by and by: what the machine does besides is no gain of help.
+  void add(double measured) {
+    constexpr double kNewShare = 0.2;
+    seconds = frames == 0 || measured < seconds ? measured : seconds + kNewShare * (measured - seconds);
+    ++frames;
+  }
+};
+
 }  // namespace
 
 struct FrameThreads::Crew {
@@ -68,8 +89,8 @@ struct FrameThreads::Crew {
 
   std::size_t least_bytes = 0;
   std::uint64_t frames_alone = 0;  // still to go without help
-  std::size_t alone_bytes = 0;     // of the model whose frames alone took
-  double alone_seconds = 0;        // this long, a running mean; 0: not known
+  double gained = 0;               // seconds, by help
+  std::array<FramesAlone, 8> alone;
   std::uint32_t frame_number = 0;
   std::vector<std::thread> helpers;
 
@@ -97,51 +118,68 @@ struct FrameThreads::Crew {
 
   void help() {
     auto last_work = Clock::now();
-    int idle = 0;
     while (!stop.load(std::memory_order_relaxed)) {
       const Ticket now = Ticket::of(ticket.load(std::memory_order_acquire));
       if (now.front < now.back) {
         work(false);
         last_work = Clock::now();
-        idle = 0;
-      } else if (++idle < 1000) {
+        continue;
+      }
+      const auto idle = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - last_work);
+      if (idle < kSpinning) {
         pause_briefly();
       } else {
-        const bool recent = Clock::now() - last_work < std::chrono::milliseconds(100);
-        std::this_thread::sleep_for(std::chrono::microseconds(recent ? 50 : 1000));
+        std::this_thread::sleep_for(std::clamp(idle / kNapShare, kShortestNap, kLongestNap));
       }
     }
   }
 
-  void run_together() noexcept {
-    const auto begin = Clock::now();
+  /// All panels of a frame, with or without the helpers.
+  void run(bool together, const detail::PanelMatrix& whole, std::size_t bytes, const detail::FrameFactors& factors,
+           const detail::FrameTarget& to) noexcept {
+    ++frame_number;
+    if (!together) {
+      detail::panel_product(whole, 0, whole.panels(), &factors, &to, 1);
+      return;
+    }
+    matrix = whole;
+    frame = factors;
+    target = to;
     constexpr std::size_t kMostPieces = 0xffff;
-    const std::size_t panels = matrix.panels();
-    piece_panels = std::max(piece_panels, (panels + kMostPieces - 1) / kMostPieces);
+    const std::size_t panels = whole.panels();
+    piece_panels = std::max({std::size_t{1}, kPieceBytes * panels / bytes, (panels + kMostPieces - 1) / kMostPieces});
     const std::size_t pieces = (panels + piece_panels - 1) / piece_panels;
     done.store(0, std::memory_order_relaxed);
-    ticket.store(Ticket{++frame_number, 0, static_cast<std::uint16_t>(pieces)}.word(), std::memory_order_release);
+    ticket.store(Ticket{frame_number, 0, static_cast<std::uint16_t>(pieces)}.word(), std::memory_order_release);
     work(true);
-    const auto own_end = Clock::now();
     while (done.load(std::memory_order_acquire) != pieces) pause_briefly();
-    const auto end = Clock::now();
-    const double waited = std::chrono::duration<double>(end - own_end).count();
-    const double together = std::chrono::duration<double>(end - begin).count();
-    // Late, or on the caller's own core, which shows only beside frames alone.
-    double lost = waited > kLateSeconds ? waited : 0;
-    if (alone_seconds > 0) lost = std::max(lost, together - alone_seconds);
-    const double usual = alone_seconds > 0 ? alone_seconds : together - waited;
-    frames_alone = static_cast<std::uint64_t>(lost / (kLateShare * std::max(usual, 1e-6)));
   }
 
-  void run_alone(const detail::PanelMatrix& whole, std::size_t bytes, const detail::FrameFactors& factors,
-                 const detail::FrameTarget& to) noexcept {
+  FramesAlone& alone_of(std::size_t bytes) noexcept {
+    FramesAlone& found = alone[bytes / 64 % alone.size()];
+    if (found.bytes != bytes) found = {bytes};
+    return found;
+  }
+
+  /// Help is asked for as long as it gains, seen over the last frames: helpers that are late now and then cost nothing
+  /// more; those that are late again and again, or on the caller's own core, are left alone until what they cost is a
+  /// small share.
+  void run_watched(const detail::PanelMatrix& whole, std::size_t bytes, const detail::FrameFactors& factors,
+                   const detail::FrameTarget& to) noexcept {
+    FramesAlone& usual = alone_of(bytes);
+    const bool together = frames_alone == 0 && usual.frames >= kFramesToKnow && frame_number % kFramesToCompare != 0;
     const auto begin = Clock::now();
-    detail::panel_product(whole, 0, whole.panels(), &factors, &to, 1);
+    run(together, whole, bytes, factors, to);
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    constexpr double kNewShare = 0.2;
-    alone_seconds = bytes == alone_bytes ? alone_seconds + kNewShare * (seconds - alone_seconds) : seconds;
-    alone_bytes = bytes;
+    if (!together) {
+      usual.add(seconds);
+      frames_alone -= frames_alone > 0;
+      return;
+    }
+    gained = std::min(gained + usual.seconds - seconds, kMostGained * usual.seconds);
+    if (gained >= 0) return;
+    frames_alone = static_cast<std::uint64_t>(-gained / (kLostShare * std::max(usual.seconds, 1e-6)));
+    gained = 0;
   }
 };
 
@@ -153,34 +191,53 @@ FrameThreads::FrameThreads(int threads, std::optional<std::size_t> least_bytes) 
   if (!least_bytes && threads > 1) measure_least_bytes();
 }
 
-/// Models of growing size, each evaluated alone and together in turns, the best time of either: what the machine can
-/// do, not what else it was doing just then. Zeros are as fast as any other numbers.
+/// Models of several sizes, each evaluated together and alone in turns, the best time of either: what the machine can
+/// do, not what else it was doing just then. Turns in which not even the largest gains do not count: something else had
+/// the helpers' cores. Zeros are as fast as any other numbers.
 void FrameThreads::measure_least_bytes() {
-  constexpr std::size_t kSmallest = 64 * 1024, kLargest = 4 * 1024 * 1024;
+  constexpr std::size_t kSmallest = 64 * 1024, kSizes = 7;
   constexpr std::size_t kEntries = 20;
   constexpr std::size_t kPanelBytes = detail::kRestBytes * (kEntries + 1);
-  constexpr int kTurns = 12;
+  constexpr int kTurns = 4, kMostTurns = 20;
+  constexpr std::chrono::microseconds kTurn{60}, kToWake{200};
   constexpr double kPays = 0.9;
-  const detail::AlignedVector<std::byte> zeros(kLargest);
+  constexpr std::size_t kUnknown = 1024 * 1024;
+  const detail::AlignedVector<std::byte> zeros(kSmallest << (kSizes - 1));
   std::vector<detail::PanelPlace> places;
-  for (std::size_t at = 0; at + kPanelBytes <= kLargest; at += kPanelBytes) places.push_back({at, kEntries});
+  for (std::size_t at = 0; at + kPanelBytes <= zeros.size(); at += kPanelBytes) places.push_back({at, kEntries});
   std::vector<float> positions(3 * detail::kPanelWidth * places.size());
   const detail::AlignedVector<float> weights(kEntries, 0.0F);
   detail::FrameFactors frame{};
   frame.weights = weights.data();
-  for (std::size_t bytes = kSmallest; bytes <= kLargest; bytes *= 2) {
+  double best[kSizes][2];  // alone, together; seconds
+  std::fill_n(&best[0][0], 2 * kSizes, 1.0);
+  const auto turn = [&](std::size_t size, bool together, std::chrono::microseconds at_least) {
+    const std::size_t bytes = kSmallest << size;
     const detail::PanelMatrix matrix{zeros.data(), places.data(), bytes / kPanelBytes * detail::kPanelWidth, false};
-    double best[2] = {1, 1};  // alone, together; seconds
-    for (int turn = 0; turn < 2 * kTurns; ++turn) {
-      crew_->least_bytes = turn % 2 == 0 ? kNever : 0;
-      crew_->frames_alone = 0;
-      const auto begin = Clock::now();
-      run(matrix, bytes, frame, {positions.data(), 3});
-      best[turn % 2] = std::min(best[turn % 2], std::chrono::duration<double>(Clock::now() - begin).count());
+    double shortest = 1;
+    const auto start = Clock::now();
+    for (auto begin = start; begin - start < at_least;) {
+      crew_->run(together, matrix, bytes, frame, {positions.data(), 3});
+      const auto end = Clock::now();
+      shortest = std::min(shortest, std::chrono::duration<double>(end - begin).count());
+      begin = end;
     }
-    crew_->least_bytes = bytes;
-    if (best[1] < kPays * best[0]) return;
+    best[size][together] = std::min(best[size][together], shortest);
+    return shortest;
+  };
+  int good = 0;
+  for (int i = 0; i < kMostTurns && good < kTurns; ++i) {
+    double shortest[2] = {};  // of the largest
+    turn(kSizes - 1, true, kToWake);
+    for (const bool together : {true, false}) {
+      for (std::size_t size = 0; size < kSizes; ++size) shortest[together] = turn(size, together, kTurn);
+    }
+    good += shortest[true] < kPays * shortest[false];
   }
+  const auto pays = [&](std::size_t size) { return best[size][true] < kPays * best[size][false]; };
+  std::size_t least = 0;
+  while (least < kSizes - 1 && !(pays(least) && pays(least + 1))) ++least;
+  crew_->least_bytes = good == kTurns ? kSmallest << least : kUnknown;
 }
 
 FrameThreads::~FrameThreads() {
@@ -201,18 +258,7 @@ void FrameThreads::run(const detail::PanelMatrix& matrix, std::size_t bytes, con
     detail::panel_product(matrix, 0, matrix.panels(), &frame, &target, 1);
     return;
   }
-  const bool compare = bytes != crew.alone_bytes || crew.frame_number % kFramesToCompare == 0;
-  if (crew.frames_alone > 0 || compare) {
-    crew.run_alone(matrix, bytes, frame, target);
-    crew.frames_alone -= crew.frames_alone > 0;
-    ++crew.frame_number;
-  } else {
-    crew.matrix = matrix;
-    crew.frame = frame;
-    crew.target = target;
-    crew.piece_panels = std::max<std::size_t>(1, kPieceBytes * matrix.panels() / bytes);
-    crew.run_together();
-  }
+  crew.run_watched(matrix, bytes, frame, target);
   crew.busy.clear(std::memory_order_release);
 }
 

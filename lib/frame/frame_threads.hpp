@@ -12,17 +12,18 @@ namespace skinbem {
 
 /// Threads that help with frames (FrameState::evaluate). The calling thread never waits for a helper to begin: it works
 /// through the skin from the front while helpers that are awake take pieces from the back, and at the end waits only
-/// for pieces already begun. Per frame there is no lock, no system call and no allocation. A helper that was late, as
-/// on a busy core, or who took the caller's own core, is not asked again until what was lost is a small share of the
-/// time; one frame in 64 is evaluated alone for comparison. Helpers spin for some 50 us
-/// after a frame, then look for the next one every 50 us, after a tenth of a second without frames every millisecond.
+/// for pieces already begun. Per frame there is no lock, no system call and no allocation. Helpers that make frames
+/// slower than they are alone, late on a busy core or on the caller's own, are not asked again until what was lost is a
+/// small share of the time; one frame in 512 is evaluated alone for comparison. Helpers spin for 50 us after a frame,
+/// then look for the next one less and less often, at last every millisecond: frames one after the other have help, a
+/// single frame now and then has not.
 ///
 /// One object serves any number of states; while it works for one thread, others evaluate alone. The result has the
 /// same bits whoever helps.
 class FrameThreads {
  public:
   /// `threads` in all, the caller among them; 0: as many as the machine has. `least_bytes`: models that take fewer are
-  /// evaluated by the caller alone; where it is not given, the size from which help pays is measured, in a few
+  /// evaluated by the caller alone; where it is not given, the size from which help pays is measured, in 5 to 10
   /// milliseconds. Throws Error(usage) for a negative number.
   explicit FrameThreads(int threads = 0, std::optional<std::size_t> least_bytes = {});
   /// Waits for the helpers to end, about a millisecond.
@@ -31,8 +32,8 @@ class FrameThreads {
   FrameThreads& operator=(const FrameThreads&) = delete;
 
   int count() const noexcept;
-  /// Bytes of a model from which on others help: 64 KiB to 4 MiB where it was measured, the largest number for one
-  /// thread.
+  /// Bytes of a model from which on others help: 64 KiB to 4 MiB where it was measured, 1 MiB where the cores were too
+  /// busy to measure it, the largest number for one thread.
   std::size_t least_bytes() const noexcept;
 
   /// All panels of one frame. What FrameState::evaluate calls.
