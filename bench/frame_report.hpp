@@ -13,7 +13,7 @@ namespace skinbem::bench {
 struct ReportOptions {
   bool quick = false;                         ///< fewer cases and frames: under 40 s
   bool busy = false;                          ///< beside a thread that loops: a busy second core
-  double seconds = 60;                        ///< at most, for each case, unless quick
+  double seconds = 8;                         ///< at most, for each case, unless quick
   std::optional<std::filesystem::path> json;  ///< one row a case
 };
 

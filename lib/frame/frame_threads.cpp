@@ -25,8 +25,9 @@ using Clock = std::chrono::steady_clock;
 
 /// A piece is about this many bytes: some microseconds, so that the wait at the end is short.
 constexpr std::size_t kPieceBytes = 64 * 1024;
-/// Share of the time that help may cost where it costs more than it gained before.
-constexpr double kLostShare = 0.1;
+/// Share of the time that help may cost where it costs more than it gained before; half of it after every loss, down to
+/// the least.
+constexpr double kLostShare = 0.1, kLeastLostShare = 0.01;
 /// What was gained counts up to this many frames, so that helpers that begin to cost are soon left alone.
 constexpr double kMostGained = 10;
 /// The first frames of a model, and one in so many later on, are evaluated alone, to know what help gains.
@@ -90,6 +91,7 @@ struct FrameThreads::Crew {
   std::size_t least_bytes = 0;
   std::uint64_t frames_alone = 0;  // still to go without help
   double gained = 0;               // seconds, by help
+  double lost_share = kLostShare;
   std::array<FramesAlone, 8> alone;
   std::uint32_t frame_number = 0;
   std::vector<std::thread> helpers;
@@ -176,10 +178,13 @@ struct FrameThreads::Crew {
       frames_alone -= frames_alone > 0;
       return;
     }
-    gained = std::min(gained + usual.seconds - seconds, kMostGained * usual.seconds);
+    const double most_gained = kMostGained * usual.seconds;
+    gained = std::min(gained + usual.seconds - seconds, most_gained);
+    if (gained == most_gained) lost_share = kLostShare;
     if (gained >= 0) return;
-    frames_alone = static_cast<std::uint64_t>(-gained / (kLostShare * std::max(usual.seconds, 1e-6)));
+    frames_alone = static_cast<std::uint64_t>(-gained / (lost_share * std::max(usual.seconds, 1e-6)));
     gained = 0;
+    lost_share = std::max(lost_share / 2, kLeastLostShare);
   }
 };
 
