@@ -152,9 +152,12 @@ nlohmann::json measured(const Case& c, std::size_t frames, double budget) {
   FrameThreads threads(c.threads);
   omp_set_num_threads(c.threads);
   std::vector<float> positions(static_cast<std::size_t>(3 * c.vertices));
-  const auto evaluate = [&] {
+  const auto set = [&] {
     // The setter of a compressed model does a part of the product, so it is counted; the rigid fit is not.
     if (c.kept == Kept::compressed && !state.set_motion(motion)) std::abort();
+  };
+  const auto evaluate = [&] {
+    set();
     if (!state.evaluate(VertexTarget{positions}, threads)) std::abort();
   };
   Points in_double;
@@ -164,6 +167,7 @@ nlohmann::json measured(const Case& c, std::size_t frames, double budget) {
     if (!single_state.evaluate(VertexTarget{positions}, threads)) std::abort();
   }};
   Contender alone{[&] {
+    set();
     if (!state.evaluate(VertexTarget{positions})) std::abort();
   }};
   Contender whole{[&] {

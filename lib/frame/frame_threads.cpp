@@ -23,11 +23,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A piece is about this many bytes: some microseconds, so that the wait at the end is short.
-constexpr std::size_t kPieceBytes = 64 * 1024;
+/// A piece is about this many bytes, some microseconds, so that the wait at the end is short; in memory that no cache
+/// holds, where each begins slowly, as many as make it a small share.
+constexpr std::size_t kPieceBytes = 64 * 1024, kMostPieces = 128;
 /// Share of the time that help may cost where it costs more than it gained before; half of it after every loss, down to
-/// the least.
-constexpr double kLostShare = 0.1, kLeastLostShare = 0.01;
+/// the least. It is tried again after this time, in seconds, at the latest.
+constexpr double kLostShare = 0.1, kLeastLostShare = 0.01, kLongestAlone = 0.1;
 /// What was gained counts up to this many frames, so that helpers that begin to cost are soon left alone.
 constexpr double kMostGained = 10;
 /// The first frames of a model, and one in so many later on, are evaluated alone, to know what help gains.
@@ -35,7 +36,7 @@ constexpr std::uint32_t kFramesToKnow = 4;
 constexpr std::uint32_t kFramesToCompare = 512;
 /// A helper looks for the next frame all the time at first, then at intervals of a share of the time without one: to
 /// wake costs, on a busy machine the caller too.
-constexpr std::chrono::microseconds kSpinning{50}, kShortestNap{50}, kLongestNap{1000};
+constexpr std::chrono::microseconds kSpinning{100}, kShortestNap{50}, kLongestNap{1000};
 constexpr int kNapShare = 4;
 /// No model is as large.
 constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
@@ -147,9 +148,8 @@ struct FrameThreads::Crew {
     matrix = whole;
     frame = factors;
     target = to;
-    constexpr std::size_t kMostPieces = 0xffff;
     const std::size_t panels = whole.panels();
-    piece_panels = std::max({std::size_t{1}, kPieceBytes * panels / bytes, (panels + kMostPieces - 1) / kMostPieces});
+    piece_panels = std::max({std::size_t{1}, kPieceBytes * panels / bytes, panels / kMostPieces});
     const std::size_t pieces = (panels + piece_panels - 1) / piece_panels;
     done.store(0, std::memory_order_relaxed);
     ticket.store(Ticket{frame_number, 0, static_cast<std::uint16_t>(pieces)}.word(), std::memory_order_release);
@@ -182,7 +182,8 @@ struct FrameThreads::Crew {
     gained = std::min(gained + usual.seconds - seconds, most_gained);
     if (gained == most_gained) lost_share = kLostShare;
     if (gained >= 0) return;
-    frames_alone = static_cast<std::uint64_t>(-gained / (lost_share * std::max(usual.seconds, 1e-6)));
+    const double apart = std::min(-gained / lost_share, kLongestAlone);
+    frames_alone = static_cast<std::uint64_t>(apart / std::max(usual.seconds, 1e-6));
     gained = 0;
     lost_share = std::max(lost_share / 2, kLeastLostShare);
   }
@@ -241,7 +242,7 @@ void FrameThreads::measure_least_bytes() {
   }
   const auto pays = [&](std::size_t size) { return best[size][true] < kPays * best[size][false]; };
   std::size_t least = 0;
-  while (least < kSizes - 1 && !(pays(least) && pays(least + 1))) ++least;
+  while (least < kSizes - 1 && !pays(least)) ++least;
   crew_->least_bytes = good == kTurns ? kSmallest << least : kUnknown;
 }
 

@@ -14,7 +14,7 @@ namespace skinbem {
 /// through the skin from the front while helpers that are awake take pieces from the back, and at the end waits only
 /// for pieces already begun. Per frame there is no lock, no system call and no allocation. Helpers that make frames
 /// slower than they are alone, late on a busy core or on the caller's own, are not asked again until what was lost is a
-/// small share of the time; one frame in 512 is evaluated alone for comparison. Helpers spin for 50 us after a frame,
+/// small share of the time; one frame in 512 is evaluated alone for comparison. Helpers spin for 100 us after a frame,
 /// then look for the next one less and less often, at last every millisecond: frames one after the other have help, a
 /// single frame now and then has not.
 ///

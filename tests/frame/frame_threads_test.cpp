@@ -39,6 +39,22 @@ TEST(FrameThreads, GiveTheSameBitsHoweverMany) {
   }
 }
 
+TEST(FrameThreads, ServeSkinsInTurns) {
+  const SyntheticSkin one = synthetic_skin(5000, 6), other = synthetic_skin(7000, 4);
+  const FrameModel models[] = {{one.rest, one.response, one.landmarks}, {other.rest, other.response, other.landmarks}};
+  FrameState states[] = {FrameState(models[0]), FrameState(models[1])};
+  ASSERT_TRUE(states[0].set_landmarks(pose(one, 0.3)));
+  ASSERT_TRUE(states[1].set_landmarks(pose(other, 0.3)));
+  FrameThreads threads(2, 0);
+  for (int i = 0; i < 1200; ++i) {  // some alone for comparison, the others not
+    const FrameState& state = states[i % 2];
+    std::vector<float> expected(static_cast<std::size_t>(3 * state.model().vertex_count())), found = expected;
+    ASSERT_TRUE(state.evaluate(expected));
+    ASSERT_TRUE(state.evaluate(VertexTarget{found}, threads));
+    ASSERT_EQ(found, expected) << "frame " << i;
+  }
+}
+
 TEST(FrameThreads, ServeCallersOnSeveralThreads) {
   const SyntheticSkin skin = synthetic_skin(3000, 6);
   const FrameModel model(skin.rest, skin.response, skin.landmarks);
