@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """plot_frame.py FOLDER FRAME.json [COMPRESSION.json ...]: pictures of what bench/frame and bench/compression measured.
 
-Writes FOLDER/frame_speed.png, and FOLDER/frame_singular_values.png where there are results of bench/compression.
-Needs Debian's python3-matplotlib.
+Writes FOLDER/frame_speed.png, and FOLDER/frame_singular_values.png where there are results of bench/compression; prints
+the tables of docs/frame.md. Needs Debian's python3-matplotlib.
 """
 import json
 import sys
@@ -56,6 +56,32 @@ def plot_times(rows, file):
     figure.savefig(file, dpi=110)
 
 
+def print_tables(rows):
+    """Microseconds and ratios as Markdown, for one thread and for two."""
+    case = {(row["threads"], row["vertices"], row["landmarks"], row["storage"]): row for row in rows}
+
+    def number(value):
+        return f"{value:.0f}" if value >= 100 else f"{value:#.3g}"
+
+    def spread(row):
+        return f"{row['p99_us'] / row['p50_us']:.2f} ({row['read_p99_us'] / row['read_us']:.2f})"
+
+    for threads in (1, 2):
+        print("| vertices | landmarks | float32 | int16 | compressed | Eigen | OpenBLAS | float32: read "
+              "| float32 / best of the two | int16 gains | float32: p99 / p50 (read's) |")
+        print("|---:|" + "---:|" * 10)
+        for (t, vertices, landmarks, storage), row in case.items():
+            if t != threads or storage != "float32":
+                continue
+            other = [case.get((t, vertices, landmarks, name)) for name in ("int16", "compressed")]
+            times = [row["p50_us"]] + [o and o["p50_us"] for o in other] + [row["eigen_us"], row["openblas_us"]]
+            cells = [f"{vertices:,}", str(landmarks)] + [number(time) if time else "" for time in times]
+            cells += [f"{row['bandwidth_fraction']:.2f}", f"{row['p50_us'] / min(times[3:]):.2f}"]
+            cells += [f"{other[0]['float32_us'] / other[0]['p50_us']:.2f}" if other[0] else "", spread(row)]
+            print("| " + " | ".join(cells) + " |")
+        print()
+
+
 def plot_singular_values(results, file):
     """Singular values of R, and what the three forms of it take."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4))
@@ -85,7 +111,9 @@ def plot_singular_values(results, file):
 
 def main():
     folder, times, *compression = sys.argv[1:]
-    plot_times(json.loads(Path(times).read_text()), Path(folder) / "frame_speed.png")
+    rows = json.loads(Path(times).read_text())
+    plot_times(rows, Path(folder) / "frame_speed.png")
+    print_tables(rows)
     if compression:
         results = sorted((json.loads(Path(name).read_text()) for name in compression), key=lambda r: r["vertices"])
         plot_singular_values(results, Path(folder) / "frame_singular_values.png")
