@@ -24,7 +24,7 @@ class FrameThreads {
  public:
   /// `threads` in all, the caller among them; 0: as many as the machine has. `least_bytes`: models that take fewer are
   /// evaluated by the caller alone; where it is not given, the size from which help pays is measured, in 5 to 10
-  /// milliseconds. Throws Error(usage) for a negative number.
+  /// milliseconds, longer beside busy programs. Throws Error(usage) for a negative number.
   explicit FrameThreads(int threads = 0, std::optional<std::size_t> least_bytes = {});
   /// Waits for the helpers to end, about a millisecond.
   ~FrameThreads();
