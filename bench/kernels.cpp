@@ -38,8 +38,9 @@ struct Scene {
   std::vector<double> x, y, z, a, b, c;
 };
 
+template <class Real = double>
 struct alignas(64) Entries {
-  std::array<double, 9 * kPanel> values{};
+  std::array<Real, 9 * kPanel> values{};
 };
 
 void count(benchmark::State& state, double operations_per_pair) {
@@ -50,27 +51,27 @@ void count(benchmark::State& state, double operations_per_pair) {
   state.counters["flop/s"] = benchmark::Counter(pairs * operations_per_pair, benchmark::Counter::kIsRate);
 }
 
-template <class Kernel, Precision precision = Precision::float64>
+template <class Kernel, class Real = double>
 void double_layer(benchmark::State& state) {
   const Kernel kernel{};
   const Scene scene(static_cast<std::size_t>(state.range(0)));
-  Entries out[3];
-  double* const pointers[3] = {out[0].values.data(), out[1].values.data(), out[2].values.data()};
+  Entries<Real> out[3];
+  Real* const pointers[3] = {out[0].values.data(), out[1].values.data(), out[2].values.data()};
   for (auto _ : state) {
-    add_double_layer(kernel, scene.panel, 0xffffu, scene.source(), Eigen::Vector3d::UnitZ(), pointers, precision);
+    add_double_layer(kernel, scene.panel, 0xffffu, scene.source(), Eigen::Vector3d::UnitZ(), pointers);
     benchmark::ClobberMemory();
   }
   count(state, 3 + 5 + 15 + 2 + 3 + 2 + 1 + 6 + 54);
 }
 BENCHMARK(double_layer<Kelvin<double>>)->Arg(3)->Arg(7)->Arg(16)->Arg(42);
-BENCHMARK((double_layer<Kelvin<double>, Precision::float32>))->Arg(3)->Arg(7)->Arg(16)->Arg(42);
+BENCHMARK((double_layer<Kelvin<double>, float>))->Arg(3)->Arg(7)->Arg(16)->Arg(42);
 BENCHMARK(double_layer<ScalarKelvin>)->Arg(7);
 
 template <class Kernel>
 void single_layer(benchmark::State& state) {
   const Kernel kernel{};
   const Scene scene(static_cast<std::size_t>(state.range(0)));
-  Entries out;
+  Entries<> out;
   for (auto _ : state) {
     add_single_layer(kernel, scene.panel, 0xffffu, scene.source(), out.values.data());
     benchmark::ClobberMemory();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <skinbem/kernels/kelvin_batch.hpp>
 
+#include <algorithm>
+
 // Vectors of unknown size cannot be members of a struct; those targets use NEON or scalar code instead.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -26,19 +28,10 @@ HWY_INLINE hn::Mask<D> mask_of(D d, PanelMask lanes) {
   return hn::LoadMaskBits(d, bits);
 }
 
-/// Adds the lanes of the mask to sums in double.
-HWY_INLINE void add(D64 d, hn::Mask<D64> mask, V64 value, double* HWY_RESTRICT out) {
+/// Adds the lanes of the mask to the sums.
+template <class D>
+HWY_INLINE void add(D d, hn::Mask<D> mask, hn::Vec<D> value, hn::TFromD<D>* HWY_RESTRICT out) {
   hn::Store(hn::Add(hn::Load(d, out), hn::IfThenElseZero(mask, value)), d, out);
-}
-
-HWY_INLINE void add(D32 d, hn::Mask<D32> mask, V32 value, double* HWY_RESTRICT out) {
-  alignas(64) float kept[kPanel];
-  hn::Store(hn::IfThenElseZero(mask, value), d, kept);
-  const hn::Rebind<float, D64> half;  // as many floats as a vector of double takes
-  const D64 wide;
-  for (std::size_t lane = 0; lane < hn::Lanes(d); lane += hn::Lanes(wide)) {
-    hn::Store(hn::Add(hn::Load(wide, out + lane), hn::PromoteTo(wide, hn::Load(half, kept + lane))), wide, out + lane);
-  }
 }
 
 /// 1/sqrt(r2) to a few units of the last place, in half the time of a square root and a division: the hardware's 12
@@ -72,10 +65,10 @@ HWY_INLINE Sums<hn::Vec<D>> zero(D d) {
   return {o, o, o, o, o, o, o, o, o};
 }
 
-/// From the moments to the three by three entries (see Kelvin::double_layer_integral), added to `out`.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void add_traction(D d, hn::Mask<D> mask, const Kelvin<double>& kernel, const double* normal, V height,
-                             const Sums<V>& s, double* HWY_RESTRICT out) {
+/// From the moments to the three by three entries (see Kelvin::double_layer_integral): put(value, where).
+template <class D, class V, class Put>
+HWY_INLINE void put_traction(D d, const Kelvin<double>& kernel, const double* normal, V height, const Sums<V>& s,
+                             const Put& put) {
   using T = hn::TFromD<D>;
   const double c = kernel.double_layer_factor();
   const double slip_factor = c * (1 - 2 * kernel.poisson);
@@ -88,15 +81,15 @@ HWY_INLINE void add_traction(D d, hn::Mask<D> mask, const Kelvin<double>& kernel
   const V skew_xy = hn::MulSub(s.x, ny, hn::Mul(s.y, nx));
   const V skew_xz = hn::MulSub(s.x, nz, hn::Mul(s.z, nx));
   const V skew_yz = hn::MulSub(s.y, nz, hn::Mul(s.z, ny));
-  add(d, mask, hn::MulSub(h3, s.xx, isotropic), out + 0 * kPanel);
-  add(d, mask, hn::MulAdd(h3, s.xy, skew_xy), out + 1 * kPanel);
-  add(d, mask, hn::MulAdd(h3, s.xz, skew_xz), out + 2 * kPanel);
-  add(d, mask, hn::MulSub(h3, s.xy, skew_xy), out + 3 * kPanel);
-  add(d, mask, hn::MulSub(h3, s.yy, isotropic), out + 4 * kPanel);
-  add(d, mask, hn::MulAdd(h3, s.yz, skew_yz), out + 5 * kPanel);
-  add(d, mask, hn::MulSub(h3, s.xz, skew_xz), out + 6 * kPanel);
-  add(d, mask, hn::MulSub(h3, s.yz, skew_yz), out + 7 * kPanel);
-  add(d, mask, hn::MulSub(h3, s.zz, isotropic), out + 8 * kPanel);
+  put(hn::MulSub(h3, s.xx, isotropic), 0 * kPanel);
+  put(hn::MulAdd(h3, s.xy, skew_xy), 1 * kPanel);
+  put(hn::MulAdd(h3, s.xz, skew_xz), 2 * kPanel);
+  put(hn::MulSub(h3, s.xy, skew_xy), 3 * kPanel);
+  put(hn::MulSub(h3, s.yy, isotropic), 4 * kPanel);
+  put(hn::MulAdd(h3, s.yz, skew_yz), 5 * kPanel);
+  put(hn::MulSub(h3, s.xz, skew_xz), 6 * kPanel);
+  put(hn::MulSub(h3, s.yz, skew_yz), 7 * kPanel);
+  put(hn::MulSub(h3, s.zz, isotropic), 8 * kPanel);
 }
 
 /// Coordinates of one vector of field points; any common origin.
@@ -108,7 +101,7 @@ struct Field {
 template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE void double_layer_of_vector(D d, const Kelvin<double>& kernel, const Field<V>& at, PanelMask lanes,
                                        std::size_t count, const T* HWY_RESTRICT const* source,
-                                       const double* HWY_RESTRICT normal, double* const* out) {
+                                       const double* HWY_RESTRICT normal, T* const* out) {
   Sums<V> a = zero(d), b = zero(d), c = zero(d);
   for (std::size_t q = 0; q < count; ++q) {
     const V rx = hn::Sub(hn::Set(d, source[0][q]), at.x);
@@ -147,9 +140,13 @@ HWY_INLINE void double_layer_of_vector(D d, const Kelvin<double>& kernel, const 
                               hn::MulAdd(hn::Sub(hn::Set(d, source[1][0]), at.y), component(1),
                                          hn::Mul(hn::Sub(hn::Set(d, source[0][0]), at.x), component(0))));
   const auto mask = mask_of(d, lanes);
-  add_traction(d, mask, kernel, normal, height, a, out[0]);
-  add_traction(d, mask, kernel, normal, height, b, out[1]);
-  add_traction(d, mask, kernel, normal, height, c, out[2]);
+  const auto add_to = [&](const Sums<V>& sums, T* HWY_RESTRICT to) HWY_ATTR {
+    put_traction(d, kernel, normal, height, sums,
+                 [&](V value, std::size_t k) HWY_ATTR { add(d, mask, value, to + k); });
+  };
+  add_to(a, out[0]);
+  add_to(b, out[1]);
+  add_to(c, out[2]);
 }
 
 /// Calls f(first, lanes) for each vector of the panel that has a point in the mask; bit 0 of lanes is point `first`.
@@ -177,26 +174,32 @@ void double_layer_of_panel(const Kelvin<double>& kernel, const PointPanel& panel
 
 /// In single precision relative to the first Gauss point, so that only r is rounded, not the position in space.
 void double_layer_of_panel_f32(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask,
-                               const SourcePoints& source, const double* normal, double* const* out) {
+                               const SourcePoints& source, const double* normal, float* const* out) {
+  constexpr std::size_t kMost = 64;  // points at once
   const D32 d;
-  alignas(64) float local[6][kMostSinglePoints];
+  alignas(64) float local[6][kMost];
   alignas(64) float at[3][kPanel];
   const double origin[3] = {source.x[0], source.y[0], source.z[0]};
   const double* const points[3] = {source.x, source.y, source.z};
   const double* const field[3] = {panel.x, panel.y, panel.z};
   const float* const sources[6] = {local[0], local[1], local[2], local[3], local[4], local[5]};
   for (int k = 0; k < 3; ++k) {
-    for (std::size_t q = 0; q < source.count; ++q) {
-      local[k][q] = static_cast<float>(points[k][q] - origin[k]);
-      local[3 + k][q] = static_cast<float>(source.weights[k][q]);
-    }
     for (std::size_t p = 0; p < kPanel; ++p) at[k][p] = static_cast<float>(field[k][p] - origin[k]);
   }
-  for_each_vector(d, mask, [&](std::size_t first, PanelMask lanes) HWY_ATTR {
-    const Field<hn::Vec<D32>> x = {hn::Load(d, at[0] + first), hn::Load(d, at[1] + first), hn::Load(d, at[2] + first)};
-    double* const shifted[3] = {out[0] + first, out[1] + first, out[2] + first};
-    double_layer_of_vector(d, kernel, x, lanes, source.count, sources, normal, shifted);
-  });
+  for (std::size_t done = 0; done < source.count; done += kMost) {
+    const std::size_t count = std::min(kMost, source.count - done);
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t q = 0; q < count; ++q) {
+        local[k][q] = static_cast<float>(points[k][done + q] - origin[k]);
+        local[3 + k][q] = static_cast<float>(source.weights[k][done + q]);
+      }
+    }
+    for_each_vector(d, mask, [&](std::size_t first, PanelMask lanes) HWY_ATTR {
+      const Field<V32> x = {hn::Load(d, at[0] + first), hn::Load(d, at[1] + first), hn::Load(d, at[2] + first)};
+      float* const shifted[3] = {out[0] + first, out[1] + first, out[2] + first};
+      double_layer_of_vector(d, kernel, x, lanes, count, sources, normal, shifted);
+    });
+  }
 }
 
 void single_layer_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask,
@@ -246,7 +249,6 @@ void single_layer_of_panel(const Kelvin<double>& kernel, const PointPanel& panel
 void dipoles_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, const Dipoles& dipoles, double* to) {
   const D64 d;
   using V = hn::Vec<D64>;
-  const auto every_lane = hn::FirstN(d, hn::Lanes(d));
   for (std::size_t first = 0; first < kPanel; first += hn::Lanes(d)) {
     const V x = hn::Load(d, panel.x + first);
     const V y = hn::Load(d, panel.y + first);
@@ -274,8 +276,8 @@ void dipoles_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, con
       const V height = hn::MulAdd(rz, hn::Set(d, normal[2]),
                                   hn::MulAdd(ry, hn::Set(d, normal[1]), hn::Mul(rx, hn::Set(d, normal[0]))));
       double* const out = to + q * 9 * kPanel + first;
-      for (std::size_t e = 0; e < 9; ++e) hn::Store(hn::Zero(d), d, out + e * kPanel);
-      add_traction(d, every_lane, kernel, normal, height, s, out);
+      put_traction(d, kernel, normal, height, s,
+                   [&](V value, std::size_t k) HWY_ATTR { hn::Store(value, d, out + k); });
     }
   }
 }
@@ -293,12 +295,13 @@ HWY_EXPORT(single_layer_of_panel);
 HWY_EXPORT(dipoles_of_panel);
 
 void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
-                      const Eigen::Vector3d& n, double* const out[3], Precision precision) {
-  if (precision == Precision::float32 && source.count <= kMostSinglePoints) {
-    HWY_DYNAMIC_DISPATCH(double_layer_of_panel_f32)(kernel, panel, mask, source, n.data(), out);
-  } else {
-    HWY_DYNAMIC_DISPATCH(double_layer_of_panel)(kernel, panel, mask, source, n.data(), out);
-  }
+                      const Eigen::Vector3d& n, double* const out[3]) {
+  HWY_DYNAMIC_DISPATCH(double_layer_of_panel)(kernel, panel, mask, source, n.data(), out);
+}
+
+void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
+                      const Eigen::Vector3d& n, float* const out[3]) {
+  HWY_DYNAMIC_DISPATCH(double_layer_of_panel_f32)(kernel, panel, mask, source, n.data(), out);
 }
 
 void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,

@@ -9,12 +9,11 @@
 
 namespace skinbem {
 
-/// Rules of more points are summed in double whatever the precision.
-inline constexpr std::size_t kMostSinglePoints = 64;
-
-/// As the template in panel.hpp; float32 is used where it is permitted.
+/// As the template in panel.hpp.
 void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
-                      const Eigen::Vector3d& n, double* const out[3], Precision precision = Precision::float64);
+                      const Eigen::Vector3d& n, double* const out[3]);
+void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
+                      const Eigen::Vector3d& n, float* const out[3]);
 
 /// As the template in panel.hpp.
 void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,

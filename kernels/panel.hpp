@@ -26,12 +26,6 @@ struct PointPanel {
   Eigen::Vector3d point(std::size_t p) const { return {x[p], y[p], z[p]}; }
 };
 
-/// Arithmetic of a batch; sums are always in double.
-enum class Precision {
-  float64,
-  float32,  ///< errors of some 1e-6 of the largest entry
-};
-
 /// Gauss points of one flat triangle; #count each.
 struct SourcePoints {
   std::size_t count;
@@ -68,11 +62,11 @@ void double_layer_of_dipoles(const Kernel& kernel, const PointPanel& panel, cons
 }
 
 /// Adds int N_v T_ij dS at the points of `mask` to out[v][(components i + j) kPanel + p], v = 0, 1, 2; n is the
-/// triangle's unit normal. Each out[v] is aligned to 64 bytes. float32 is a permission, which this version does not
-/// use.
-template <class Kernel>
+/// triangle's unit normal. Each out[v] is aligned to 64 bytes. Real is double, or float where errors of some 1e-6 of
+/// the largest entry are small enough; this version sums in it, others compute in it.
+template <class Kernel, class Real>
 void add_double_layer(const Kernel& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
-                      const Eigen::Vector3d& n, double* const out[3], Precision = Precision::float64) {
+                      const Eigen::Vector3d& n, Real* const out[3]) {
   for (; mask != 0; mask &= mask - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(mask));
     for (std::size_t q = 0; q < source.count; ++q) {
@@ -80,7 +74,7 @@ void add_double_layer(const Kernel& kernel, const PointPanel& panel, PanelMask m
       const typename Kernel::Block value = kernel.double_layer(r, n);
       for (int e = 0; e < Kernel::components * Kernel::components; ++e) {
         const double entry = value(e / Kernel::components, e % Kernel::components);
-        for (int v = 0; v < 3; ++v) out[v][e * kPanel + p] += source.weights[v][q] * entry;
+        for (int v = 0; v < 3; ++v) out[v][e * kPanel + p] += static_cast<Real>(source.weights[v][q] * entry);
       }
     }
   }

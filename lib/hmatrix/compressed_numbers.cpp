@@ -121,7 +121,7 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
   const auto& near = partition_.near[leaf];
   T zeros[kTile] = {};
   Lost<T> lost[ClusterTree::largest_leaf / std::int32_t(kPanel)];  // by panel of rows
-  constexpr std::size_t together = 4;  // leaves at once: their triangles overlap, their entries stay in the cache
+  constexpr std::size_t together = 8;  // leaves at once: their triangles overlap, their entries stay in the cache
   Index first_column = 0;
   for (std::size_t first = 0; first < near.size(); first += together) {
     std::vector<std::int32_t> columns;
@@ -142,14 +142,14 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
       first_column += dofs.length;
     }
     collocation.for_double_layer_panels(
-        vertices(cluster.begin, cluster.end), columns, [&](std::size_t row, std::size_t, const double* entries) {
+        vertices(cluster.begin, cluster.end), columns, [&](std::size_t row, std::size_t, const T* entries) {
           for (std::size_t c = 0; c < columns.size(); ++c) {
             for (int j = 0; j < components; ++j) {
               const Index column = place[c] + j * Index(kPanel);
               T* const numbers = lost[row / kPanel].column(column);
               for (int i = 0; i < components; ++i) {
-                const double* from = entries + (c * components * components + components * i + j) * kPanel;
-                for (std::size_t p = 0; p < kPanel; ++p) numbers[i * kPanel + p] += T(from[p]);
+                const T* from = entries + (c * components * components + components * i + j) * kPanel;
+                for (std::size_t p = 0; p < kPanel; ++p) numbers[i * kPanel + p] += from[p];
               }
               schedule_.set_column(out_[leaf], Index(row) * components, column, numbers);
             }

@@ -17,6 +17,9 @@
 #include <skinbem/operator/element_integral.hpp>
 
 namespace skinbem {
+namespace detail {
+class GaussPoints;
+}
 
 /// A scalar density on the surface, sum_i value_i N_i.
 struct VertexWeight {
@@ -56,6 +59,10 @@ class Collocation {
   void for_double_layer_panels(
       std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
       const std::function<void(std::size_t first, std::size_t count, const double* entries)>& store) const;
+  /// The same in single precision whatever the tolerance: errors of some 1e-6 of the largest entry of a block.
+  void for_double_layer_panels(
+      std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+      const std::function<void(std::size_t first, std::size_t count, const float* entries)>& store) const;
 
   /// The same as a matrix, written to `out`: components #rows by components #columns.
   void double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
@@ -66,18 +73,27 @@ class Collocation {
 
  private:
   struct Panel;
+  template <class Real>
   struct ColumnBlock;
   struct Reach;
 
   Index panel_count() const;
   /// Calls body(k, panel, column block of the thread) for every panel of rows, on all threads.
-  template <class Body>
+  template <class Real, class Body>
   void for_each_panel(const Progress& progress, std::string_view stage, const Body& body) const;
-  std::vector<std::int32_t> triangles_around(std::span<const std::int32_t> columns) const;
+  std::vector<std::int32_t> triangles_around(std::span<const std::int32_t> columns,
+                                             std::span<const std::int32_t> slot_of) const;
   static Reach reach(const Panel& panel, const SourceTriangle& triangle, const RuleLadder& ladder);
-  void add_triangle(const Panel& panel, Index t, ColumnBlock& block) const;
-  void store_rows(const Panel& panel, ColumnBlock& block, RowMajorMatrix& H) const;
-  void add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value, ColumnBlock& block) const;
+  template <class Real>
+  void fill(RowMajorMatrix& H, const Progress& progress, std::span<AssemblyCounts> counts) const;
+  template <class Real, class Store>
+  void make_panels(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns, const Store& store) const;
+  template <class Real>
+  void add_triangle(const Panel& panel, Index t, detail::GaussPoints& gauss, ColumnBlock<Real>& block) const;
+  template <class Real>
+  void store_rows(const Panel& panel, ColumnBlock<Real>& block, RowMajorMatrix& H) const;
+  void add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value, detail::GaussPoints& gauss,
+                           ColumnBlock<double>& block) const;
 
   std::vector<Eigen::Vector3d> vertices_;  ///< times scale_
   std::vector<std::array<std::int32_t, 3>> triangles_;
@@ -86,7 +102,7 @@ class Collocation {
   std::vector<std::int32_t> order_;  ///< vertices along a space-filling curve
   double scale_;  ///< a power of two, so that scaling is exact: the kernels' batches work near unit length
   ElementIntegral<Kernel> integral_;
-  Precision precision_;  ///< of the far pairs: float where the tolerance is at least ten times its error
+  bool single_;  ///< sums in float: where the tolerance is at least ten times their error
 };
 
 extern template class Collocation<Kelvin<double>>;

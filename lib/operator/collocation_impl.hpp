@@ -15,44 +15,58 @@
 #include <numeric>
 
 #include <skinbem/kernels/kelvin_batch.hpp>
+#include <skinbem/kernels/panel_reach.hpp>
 #include <skinbem/operator/collocation.hpp>
 
 namespace skinbem {
 namespace detail {
 
 /// A panel's columns: for each vertex components^2 entries of kPanel points, aligned for the batches.
+template <class Real>
 struct AlignedBuffer {
-  std::vector<double> storage;
-  double* data = nullptr;
+  std::vector<Real> storage;
+  Real* data = nullptr;
 
   void zero(std::size_t size) {
-    storage.assign(size + 8, 0.0);
+    storage.assign(size + 64 / sizeof(Real), Real(0));
     const auto address = reinterpret_cast<std::uintptr_t>(storage.data());
-    data = storage.data() + (64 - address % 64) % 64 / sizeof(double);
+    data = storage.data() + (64 - address % 64) % 64 / sizeof(Real);
   }
 };
 
 /// Gauss points of one triangle for one rule, in the layout of the batches.
 class GaussPoints {
  public:
-  /// `density` scales the three hat functions.
-  SourcePoints make(const TriangleGeometry<double>& g, const TriangleRule& rule, const Eigen::Vector3d& density) {
+  /// `density` scales the three hat functions. The points stay until the next call, and with the same triangle and rule
+  /// beyond it: then the density must be the same, too.
+  SourcePoints of(const TriangleGeometry<double>& g, const TriangleRule& rule, const Eigen::Vector3d& density) {
+    if (triangle_ != &g || rule_ != &rule) make(g, rule, density);
     const std::size_t n = static_cast<std::size_t>(rule.size());
-    storage_.resize(6 * n);
-    double* p[6];
-    for (std::size_t k = 0; k < 6; ++k) p[k] = storage_.data() + k * n;
-    for (std::size_t q = 0; q < n; ++q) {
-      const Eigen::Vector3d b = rule.barycentric.col(q);
-      const double weight = rule.weights[q] * g.twice_area / 2;
-      for (int k = 0; k < 3; ++k) {
-        p[k][q] = b[0] * g.vertices[0][k] + b[1] * g.vertices[1][k] + b[2] * g.vertices[2][k];
-        p[3 + k][q] = b[k] * weight * density[k];
-      }
-    }
-    return {n, p[0], p[1], p[2], {p[3], p[4], p[5]}};
+    const double* p = storage_.data();
+    return {n, p, p + n, p + 2 * n, {p + 3 * n, p + 4 * n, p + 5 * n}};
   }
 
  private:
+  void make(const TriangleGeometry<double>& g, const TriangleRule& rule, const Eigen::Vector3d& density) {
+    const std::size_t n = static_cast<std::size_t>(rule.size());
+    storage_.resize(6 * n);
+    const double* b = rule.barycentric.data();
+    const Eigen::Vector3d scale = density * (g.twice_area / 2);
+    for (int k = 0; k < 3; ++k) {
+      const double corner[3] = {g.vertices[0][k], g.vertices[1][k], g.vertices[2][k]};
+      double* const place = storage_.data() + std::size_t(k) * n;
+      double* const weight = place + 3 * n;
+      for (std::size_t q = 0; q < n; ++q) {
+        place[q] = b[3 * q] * corner[0] + b[3 * q + 1] * corner[1] + b[3 * q + 2] * corner[2];
+        weight[q] = b[3 * q + std::size_t(k)] * rule.weights.data()[q] * scale[k];
+      }
+    }
+    triangle_ = &g;
+    rule_ = &rule;
+  }
+
+  const TriangleGeometry<double>* triangle_ = nullptr;
+  const TriangleRule* rule_ = nullptr;
   std::vector<double> storage_;
 };
 
@@ -85,10 +99,11 @@ inline std::vector<std::int32_t> morton_order(const std::vector<Eigen::Vector3d>
   return order;
 }
 
-template <class Block>
-void add_block(const Block& block, double* out) {
+template <class Block, class Real>
+void add_block(const Block& block, Real* out) {
   for (Eigen::Index e = 0; e < Block::SizeAtCompileTime; ++e) {
-    out[e * Eigen::Index(kPanel)] += block(e / Block::ColsAtCompileTime, e % Block::ColsAtCompileTime);
+    out[e * Eigen::Index(kPanel)] +=
+        static_cast<Real>(block(e / Block::ColsAtCompileTime, e % Block::ColsAtCompileTime));
   }
 }
 
@@ -110,21 +125,13 @@ struct Collocation<Kernel>::Panel {
     }
   }
   PanelMask mask() const { return (1u << count) - 1u; }
-
-  /// Squared distances to a centre.
-  void distances2(const Eigen::Vector3d& centre, double out[kPanel]) const {
-    for (std::size_t p = 0; p < kPanel; ++p) {
-      const double dx = points.x[p] - centre[0], dy = points.y[p] - centre[1], dz = points.z[p] - centre[2];
-      out[p] = dx * dx + dy * dy + dz * dz;
-    }
-  }
 };
 
-/// The entries of one panel of rows in the columns asked for, and scratch space of the thread that makes them.
+/// The entries of one panel of rows in the columns asked for.
 template <class Kernel>
+template <class Real>
 struct Collocation<Kernel>::ColumnBlock {
   static constexpr std::size_t entries = components * components;
-  detail::GaussPoints gauss;
   AssemblyCounts counts;
 
   /// `slot_of` is by vertex, -1 for those that are not asked for.
@@ -134,8 +141,8 @@ struct Collocation<Kernel>::ColumnBlock {
     counts = {};
     values_.zero((slots + 1) * entries * kPanel);  // one more slot takes what is not asked for
   }
-  double* slot(std::size_t k) { return values_.data + k * entries * kPanel; }
-  double* at(std::int32_t vertex) {
+  Real* slot(std::size_t k) { return values_.data + k * entries * kPanel; }
+  Real* at(std::int32_t vertex) {
     const std::int32_t k = slot_of_[vertex];
     return slot(k < 0 ? slots_ : static_cast<std::size_t>(k));
   }
@@ -148,19 +155,14 @@ struct Collocation<Kernel>::ColumnBlock {
  private:
   std::span<const std::int32_t> slot_of_;
   std::size_t slots_ = 0;
-  detail::AlignedBuffer values_;  ///< [slot][entry][point]
+  detail::AlignedBuffer<Real> values_;  ///< [slot][entry][point]
 };
 
-/// Which points of a panel are near a triangle, and the Gauss rule that serves the others of either half: they are
-/// neighbours.
+/// Which points of a panel are near a triangle, and the Gauss rule that serves the others.
 template <class Kernel>
 struct Collocation<Kernel>::Reach {
-  struct Far {
-    PanelMask mask;
-    const TriangleRule* rule;
-  };
-  PanelMask near = 0;
-  Far far[2];
+  PanelMask near, far;
+  const TriangleRule* rule;
 };
 
 template <class Kernel>
@@ -169,7 +171,7 @@ Index Collocation<Kernel>::panel_count() const {
 }
 
 template <class Kernel>
-template <class Body>
+template <class Real, class Body>
 void Collocation<Kernel>::for_each_panel(const Progress& progress, std::string_view stage, const Body& body) const {
   std::exception_ptr failure;
   std::atomic<bool> failed = false;
@@ -177,7 +179,7 @@ void Collocation<Kernel>::for_each_panel(const Progress& progress, std::string_v
   const Index panels = panel_count();
 #pragma omp parallel
   {
-    ColumnBlock block;
+    ColumnBlock<Real> block;
 #pragma omp for schedule(dynamic, 1)
     for (Index k = 0; k < panels; ++k) {
       if (failed) continue;
@@ -201,7 +203,7 @@ Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel,
     : triangles_of_vertex_(triangles_around_vertices(mesh)),
       scale_(unit_scale(mesh)),
       integral_(kernel, std::max(smallest_tolerance, options.tolerance / 2)),
-      precision_(options.tolerance >= 1e-5 ? Precision::float32 : Precision::float64) {
+      single_(options.tolerance >= 1e-5) {
   vertices_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;
   triangles_.resize(mesh.triangle_count());
@@ -218,60 +220,44 @@ Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel,
   order_ = detail::morton_order(vertices_);
 }
 
+/// Each with the first of its vertices that is asked for. `slot_of` is by vertex, -1 for those that are not.
 template <class Kernel>
-std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const std::int32_t> columns) const {
+std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const std::int32_t> columns,
+                                                                std::span<const std::int32_t> slot_of) const {
   std::vector<std::int32_t> found;
   for (const std::int32_t v : columns) {
-    const auto around = triangles_of_vertex_[v];
-    found.insert(found.end(), around.begin(), around.end());
+    for (const std::int32_t t : triangles_of_vertex_[v]) {
+      const auto& corners = triangles_[t];
+      const auto sooner = [&](std::int32_t corner) { return slot_of[corner] >= 0 && slot_of[corner] < slot_of[v]; };
+      if (std::none_of(corners.begin(), corners.end(), sooner)) found.push_back(t);
+    }
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 
 template <class Kernel>
 typename Collocation<Kernel>::Reach Collocation<Kernel>::reach(const Panel& panel, const SourceTriangle& triangle,
                                                                const RuleLadder& ladder) {
-  alignas(64) double distance2[kPanel];
-  panel.distances2(triangle.centroid, distance2);
-  const double limit = ladder.near_ratio2() * triangle.radius2;
-  const PanelMask used = panel.mask();
-  Reach split;
-  for (std::size_t half = 0; half < 2; ++half) {
-    PanelMask near = 0;
-    double closest = std::numeric_limits<double>::infinity();
-    for (std::size_t p = half * kPanel / 2; p < (half + 1) * kPanel / 2; ++p) {
-      const bool is_near = distance2[p] < limit;
-      near |= PanelMask(is_near) << p;
-      closest = is_near ? closest : std::min(closest, distance2[p]);
-    }
-    constexpr PanelMask half_mask = (1u << kPanel / 2) - 1u;
-    split.near |= near & used;
-    split.far[half] = {~near & used & half_mask << half * kPanel / 2, ladder.rule(closest / triangle.radius2)};
-  }
-  if (split.far[0].rule == split.far[1].rule) {
-    split.far[0].mask |= split.far[1].mask;
-    split.far[1].mask = 0;
-  }
-  return split;
+  const PanelReach found = panel_reach(panel.points, triangle.centroid, ladder.near_ratio2() * triangle.radius2);
+  return {found.near & panel.mask(), ~found.near & panel.mask(), ladder.rule(found.closest2 / triangle.radius2)};
 }
 
 template <class Kernel>
-void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, ColumnBlock& block) const {
+template <class Real>
+void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, detail::GaussPoints& gauss,
+                                       ColumnBlock<Real>& block) const {
   const SourceTriangle& triangle = sources_[t];
   const auto& v = triangles_[t];
-  double* const out[3] = {block.at(v[0]), block.at(v[1]), block.at(v[2])};
-  const Reach split = reach(panel, triangle, integral_.double_layer_rules());
+  Real* const out[3] = {block.at(v[0]), block.at(v[1]), block.at(v[2])};
+  const auto [near_points, far_points, rule] = reach(panel, triangle, integral_.double_layer_rules());
   block.counts.pairs += panel.count;
-  block.counts.near += static_cast<unsigned>(std::popcount(split.near));
+  block.counts.near += static_cast<unsigned>(std::popcount(near_points));
 
-  for (const auto& far : split.far) {
-    if (far.mask == 0) continue;
-    const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, {1, 1, 1});
-    add_double_layer(integral_.kernel(), panel.points, far.mask, points, triangle.geometry.normal, out, precision_);
+  if (far_points != 0) {
+    const SourcePoints points = gauss.of(triangle.geometry, *rule, {1, 1, 1});
+    add_double_layer(integral_.kernel(), panel.points, far_points, points, triangle.geometry.normal, out);
   }
-  for (PanelMask near = split.near; near != 0; near &= near - 1) {
+  for (PanelMask near = near_points; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
     const auto blocks = integral_.double_layer(triangle, panel.points.point(p));
     for (int c = 0; c < 3; ++c) {
@@ -283,17 +269,16 @@ void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, ColumnBlock&
 
 template <class Kernel>
 void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value,
-                                              ColumnBlock& block) const {
+                                              detail::GaussPoints& gauss, ColumnBlock<double>& block) const {
   const SourceTriangle& triangle = sources_[t];
   const auto& v = triangles_[t];
   const Eigen::Vector3d density(value[v[0]], value[v[1]], value[v[2]]);
-  const Reach split = reach(panel, triangle, integral_.single_layer_rules());
-  for (const auto& far : split.far) {
-    if (far.mask == 0) continue;
-    const SourcePoints points = block.gauss.make(triangle.geometry, *far.rule, density);
-    add_single_layer(integral_.kernel(), panel.points, far.mask, points, block.slot(0));
+  const auto [near_points, far_points, rule] = reach(panel, triangle, integral_.single_layer_rules());
+  if (far_points != 0) {
+    const SourcePoints points = gauss.of(triangle.geometry, *rule, density);
+    add_single_layer(integral_.kernel(), panel.points, far_points, points, block.slot(0));
   }
-  for (PanelMask near = split.near; near != 0; near &= near - 1) {
+  for (PanelMask near = near_points; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
     const auto blocks = integral_.single_layer(triangle, panel.points.point(p));
     const typename Kernel::Block sum = blocks[0] * density[0] + blocks[1] * density[1] + blocks[2] * density[2];
@@ -304,7 +289,8 @@ void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const
 /// The rows of a panel, all columns, and their diagonal blocks by rigid translation. Some columns at a time, so that
 /// what is read stays in the first-level cache and what is written fills whole cache lines.
 template <class Kernel>
-void Collocation<Kernel>::store_rows(const Panel& panel, ColumnBlock& block, RowMajorMatrix& H) const {
+template <class Real>
+void Collocation<Kernel>::store_rows(const Panel& panel, ColumnBlock<Real>& block, RowMajorMatrix& H) const {
   constexpr Index stretch = 8;
   const Index n = node_count();
   std::array<typename Kernel::Block, kPanel> sums;
@@ -326,19 +312,24 @@ void Collocation<Kernel>::store_rows(const Panel& panel, ColumnBlock& block, Row
 }
 
 template <class Kernel>
-RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress, AssemblyCounts* counts) const {
-  const Index n = node_count();
-  RowMajorMatrix H(components * n, components * n);
-  std::vector<std::int32_t> slots(n);
+template <class Real>
+void Collocation<Kernel>::fill(RowMajorMatrix& H, const Progress& progress, std::span<AssemblyCounts> counts) const {
+  std::vector<std::int32_t> slots(vertices_.size());
   std::iota(slots.begin(), slots.end(), 0);
-  std::vector<AssemblyCounts> counted(panel_count());
-
-  for_each_panel(progress, "assemble", [&](Index k, const Panel& panel, ColumnBlock& block) {
-    block.prepare(slots, n);
-    for (Index t = 0; t < Index(triangles_.size()); ++t) add_triangle(panel, t, block);
-    counted[k] = block.counts;
+  for_each_panel<Real>(progress, "assemble", [&](Index k, const Panel& panel, ColumnBlock<Real>& block) {
+    block.prepare(slots, slots.size());
+    detail::GaussPoints gauss;
+    for (Index t = 0; t < Index(triangles_.size()); ++t) add_triangle(panel, t, gauss, block);
+    counts[k] = block.counts;
     store_rows(panel, block, H);
   });
+}
+
+template <class Kernel>
+RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress, AssemblyCounts* counts) const {
+  RowMajorMatrix H(components * node_count(), components * node_count());
+  std::vector<AssemblyCounts> counted(panel_count());
+  single_ ? fill<float>(H, progress, counted) : fill<double>(H, progress, counted);
   if (counts) {
     for (const AssemblyCounts& c : counted) {
       counts->pairs += c.pairs;
@@ -348,23 +339,52 @@ RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress
   return H;
 }
 
+/// Calls store(first, count, entries) for each panel of rows. A triangle is taken for all panels before the next, so
+/// that they share its Gauss points.
+template <class Kernel>
+template <class Real, class Store>
+void Collocation<Kernel>::make_panels(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+                                      const Store& store) const {
+  thread_local std::vector<std::int32_t> slots;
+  thread_local std::vector<ColumnBlock<Real>> blocks;
+  slots.resize(std::max(slots.size(), vertices_.size()), -1);
+  for (std::size_t c = 0; c < columns.size(); ++c) slots[columns[c]] = static_cast<std::int32_t>(c);
+  std::vector<Panel> panels;
+  for (std::size_t first = 0; first < rows.size(); first += kPanel) {
+    panels.emplace_back(vertices_, rows.subspan(first, std::min(kPanel, rows.size() - first)));
+  }
+  blocks.resize(std::max(blocks.size(), panels.size()));
+  for (std::size_t k = 0; k < panels.size(); ++k) blocks[k].prepare(slots, columns.size());
+  detail::GaussPoints gauss;
+  for (const std::int32_t t : triangles_around(columns, slots)) {
+    for (std::size_t k = 0; k < panels.size(); ++k) add_triangle(panels[k], t, gauss, blocks[k]);
+  }
+  for (std::size_t k = 0; k < panels.size(); ++k) store(k * kPanel, panels[k].count, blocks[k].slot(0));
+  for (const std::int32_t v : columns) slots[v] = -1;
+}
+
 template <class Kernel>
 void Collocation<Kernel>::for_double_layer_panels(
     std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
     const std::function<void(std::size_t, std::size_t, const double*)>& store) const {
-  thread_local std::vector<std::int32_t> slots;
-  thread_local ColumnBlock block;
-  slots.resize(std::max(slots.size(), vertices_.size()), -1);
-  for (std::size_t c = 0; c < columns.size(); ++c) slots[columns[c]] = static_cast<std::int32_t>(c);
-  const std::vector<std::int32_t> triangles = triangles_around(columns);
-
-  for (std::size_t first = 0; first < rows.size(); first += kPanel) {
-    const Panel panel(vertices_, rows.subspan(first, std::min(kPanel, rows.size() - first)));
-    block.prepare(slots, columns.size());
-    for (const std::int32_t t : triangles) add_triangle(panel, t, block);
-    store(first, panel.count, block.slot(0));
+  if (!single_) {
+    make_panels<double>(rows, columns, store);
+    return;
   }
-  for (const std::int32_t v : columns) slots[v] = -1;
+  const std::size_t size = columns.size() * ColumnBlock<float>::entries * kPanel;
+  thread_local detail::AlignedBuffer<double> wide;
+  wide.zero(size);
+  make_panels<float>(rows, columns, [&](std::size_t first, std::size_t count, const float* entries) {
+    std::copy_n(entries, size, wide.data);
+    store(first, count, wide.data);
+  });
+}
+
+template <class Kernel>
+void Collocation<Kernel>::for_double_layer_panels(
+    std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+    const std::function<void(std::size_t, std::size_t, const float*)>& store) const {
+  make_panels<float>(rows, columns, store);
 }
 
 template <class Kernel>
@@ -385,17 +405,21 @@ void Collocation<Kernel>::double_layer_block(std::span<const std::int32_t> rows,
 
 template <class Kernel>
 Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const VertexWeight> density) const {
-  std::vector<std::int32_t> support;
+  std::vector<std::int32_t> support, slots(vertices_.size(), -1);
   std::vector<double> value(vertices_.size(), 0.0);
   for (const VertexWeight& d : density) {
-    support.push_back(d.vertex);
+    if (slots[d.vertex] < 0) {
+      slots[d.vertex] = static_cast<std::int32_t>(support.size());
+      support.push_back(d.vertex);
+    }
     value[d.vertex] += d.value;
   }
-  const std::vector<std::int32_t> triangles = triangles_around(support);
+  const std::vector<std::int32_t> triangles = triangles_around(support, slots);
   Eigen::MatrixXd G(components * node_count(), components);
-  for_each_panel({}, "", [&](Index, const Panel& panel, ColumnBlock& block) {
+  for_each_panel<double>({}, "", [&](Index, const Panel& panel, ColumnBlock<double>& block) {
     block.prepare({}, 0);
-    for (const std::int32_t t : triangles) add_single_layer_of(panel, t, value, block);
+    detail::GaussPoints gauss;
+    for (const std::int32_t t : triangles) add_single_layer_of(panel, t, value, gauss, block);
     for (std::size_t p = 0; p < panel.count; ++p) {
       G.template block<components, components>(components * Index(panel.vertex[p]), 0) = block.entry(0, p) / scale_;
     }

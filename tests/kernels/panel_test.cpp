@@ -49,11 +49,15 @@ struct Scene {
 };
 
 /// Entries of 16 points. Each batch is called twice, since it must add.
-struct alignas(64) Entries {
-  std::array<double, 9 * kPanel> values{};
+template <class Real>
+struct alignas(64) EntriesIn {
+  std::array<Real, 9 * kPanel> values{};
 };
+using Entries = EntriesIn<double>;
 
-void expect_same(const Entries& simd, const Entries& scalar, PanelMask mask, double allowed = tolerance::batch) {
+template <class Real>
+void expect_same(const EntriesIn<Real>& simd, const Entries& scalar, PanelMask mask,
+                 double allowed = tolerance::batch) {
   for (std::size_t p = 0; p < kPanel; ++p) {
     double largest = 0;
     for (std::size_t e = 0; e < 9; ++e) largest = std::max(largest, std::abs(scalar.values[e * kPanel + p]));
@@ -91,13 +95,42 @@ TEST_P(KelvinPanel, DoubleLayerEqualsTheScalarKernelForEveryMask) {
 TEST_P(KelvinPanel, DoubleLayerInSinglePrecisionStaysWithinItsError) {
   const Scene scene(3);
   for (PanelMask mask = 0; mask < 1u << kPanel; mask += mask < 256 ? 1 : 251) {
-    Entries a[3], b[3];
-    double* const out_a[3] = {a[0].values.data(), a[1].values.data(), a[2].values.data()};
+    EntriesIn<float> a[3], c[3];
+    Entries b[3];
+    float* const out_a[3] = {a[0].values.data(), a[1].values.data(), a[2].values.data()};
     double* const out_b[3] = {b[0].values.data(), b[1].values.data(), b[2].values.data()};
-    add_double_layer(batch_, scene.panel, mask, scene.source(), scene.normal, out_a, Precision::float32);
-    add_double_layer(scalar_, scene.panel, mask, scene.source(), scene.normal, out_b);
-    for (int v = 0; v < 3; ++v) expect_same(a[v], b[v], mask, tolerance::single_precision_batch);
+    float* const out_c[3] = {c[0].values.data(), c[1].values.data(), c[2].values.data()};
+    for (int twice = 0; twice < 2; ++twice) {
+      add_double_layer(batch_, scene.panel, mask, scene.source(), scene.normal, out_a);
+      add_double_layer(scalar_, scene.panel, mask, scene.source(), scene.normal, out_b);
+      add_double_layer(scalar_, scene.panel, mask, scene.source(), scene.normal, out_c);
+    }
+    for (int v = 0; v < 3; ++v) {
+      expect_same(a[v], b[v], mask, tolerance::single_precision_batch);
+      expect_same(c[v], b[v], mask, tolerance::single_precision_batch);
+    }
   }
+}
+
+TEST_P(KelvinPanel, RulesOfAnyLengthAreTakenInSinglePrecision) {
+  constexpr std::size_t count = 150;
+  const Scene scene(5);
+  std::array<double, count> x, y, z, weights;
+  for (std::size_t q = 0; q < count; ++q) {
+    x[q] = scene.x[q % kGaussPoints];
+    y[q] = scene.y[q % kGaussPoints];
+    z[q] = scene.z[q % kGaussPoints];
+    weights[q] = 1.0 / double(count);
+  }
+  const SourcePoints source{count, x.data(), y.data(), z.data(), {weights.data(), weights.data(), weights.data()}};
+  EntriesIn<float> a[3];
+  Entries b[3];
+  float* const out_a[3] = {a[0].values.data(), a[1].values.data(), a[2].values.data()};
+  double* const out_b[3] = {b[0].values.data(), b[1].values.data(), b[2].values.data()};
+  const PanelMask all = (1u << kPanel) - 1;
+  add_double_layer(batch_, scene.panel, all, source, scene.normal, out_a);
+  add_double_layer(scalar_, scene.panel, all, source, scene.normal, out_b);
+  for (int v = 0; v < 3; ++v) expect_same(a[v], b[v], all, tolerance::single_precision_batch);
 }
 
 TEST_P(KelvinPanel, SingleLayerEqualsTheScalarKernelForEveryMask) {
