@@ -74,14 +74,19 @@ class BasisMaker {
     return places;
   }
   static std::vector<Dof> vertex_dofs(const Cluster& leaf) { return all_components(places_of(leaf)); }
+  /// On two triangles a vertex, as many as a closed mesh has. The second is taken from the middle of what is left: at
+  /// an edge the first ones may all be on one face.
   std::vector<Dof> dipole_dofs(const Cluster& leaf) const {
-    std::vector<std::int32_t> found;
+    std::vector<std::int32_t> found, left;
     for (const std::int32_t place : places_of(leaf)) {
-      const auto around = triangles_[tree_.order()[place]];
-      found.insert(found.end(), around.begin(), around.end());
+      left.clear();
+      for (const std::int32_t t : triangles_[tree_.order()[place]]) {
+        if (std::find(found.begin(), found.end(), t) == found.end()) left.push_back(t);
+      }
+      if (left.empty()) continue;
+      found.push_back(left.front());
+      if (left.size() > 1) found.push_back(left[left.size() / 2]);
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
     return all_components(found);
   }
   static std::vector<Dof> skeletons(const Cluster& cluster, const std::vector<ClusterBasis>& bases) {
