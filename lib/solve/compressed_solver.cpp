@@ -137,10 +137,10 @@ class CompressedSolver final : public NeumannSolver {
 IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertices) {
   IterativeOptions options;
   const double levels = std::pow(std::max(1.0, double(vertices) / 1e4), -0.25);  // of the tree, whose errors add up
-  options.compression.tolerance = tolerance * levels / (tolerance >= 1e-4 ? 4 : 5);
+  options.compression.tolerance = tolerance * levels / 7;
   options.compression.samples = tolerance >= 1e-4 ? 128 : tolerance >= 1e-5 ? 256 : 448;
   options.single = tolerance >= 2e-5;
-  options.residual = std::min(1e-3, options.single ? 2 * tolerance : tolerance);
+  options.residual = std::min(1e-3, tolerance);
   options.compression.packed = tolerance >= 1e-4;
   return options;
 }
