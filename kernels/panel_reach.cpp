@@ -3,6 +3,8 @@
 
 #include <limits>
 
+// Vectors of unknown size cannot be array elements; those targets use NEON or scalar code instead.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "skinbem/kernels/panel_reach.cpp"
 // clang-format off
@@ -20,8 +22,8 @@ PanelReach reach_of_panel(const PointPanel& panel, const double* centre, double 
   const hn::CappedTag<double, kPanel / 2> d;
   const auto x = hn::Set(d, centre[0]), y = hn::Set(d, centre[1]), z = hn::Set(d, centre[2]);
   const auto limit = hn::Set(d, limit2), infinity = hn::Set(d, std::numeric_limits<double>::infinity());
-  auto closest2 = infinity;
-  PanelMask all_near = 0;
+  hn::Vec<decltype(d)> closest2[] = {infinity, infinity};
+  PanelReach reach{0, {}};
   for (std::size_t p = 0; p < kPanel; p += hn::Lanes(d)) {
     const auto dx = hn::Sub(hn::Load(d, panel.x + p), x);
     const auto dy = hn::Sub(hn::Load(d, panel.y + p), y);
@@ -31,12 +33,14 @@ PanelReach reach_of_panel(const PointPanel& panel, const double* centre, double 
     if (HWY_UNLIKELY(!hn::AllFalse(d, near))) {
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(d, near, bits);
-      all_near |= PanelMask(bits[0]) << p;
+      reach.near |= PanelMask(bits[0]) << p;
       distance2 = hn::IfThenElse(near, infinity, distance2);
     }
-    closest2 = hn::Min(closest2, distance2);
+    auto& closest = closest2[p / (kPanel / 2)];
+    closest = hn::Min(closest, distance2);
   }
-  return {all_near, hn::GetLane(hn::MinOfLanes(d, closest2))};
+  for (std::size_t half = 0; half < 2; ++half) reach.closest2[half] = hn::GetLane(hn::MinOfLanes(d, closest2[half]));
+  return reach;
 }
 
 }  // namespace HWY_NAMESPACE

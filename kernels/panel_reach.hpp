@@ -9,8 +9,8 @@ namespace skinbem {
 
 /// Points by their squared distance to a centre.
 struct PanelReach {
-  PanelMask near;   ///< nearer than the limit
-  double closest2;  ///< of the points that are not near; infinity where all are
+  PanelMask near;      ///< nearer than the limit
+  double closest2[2];  ///< of the points that are not near, by half of the panel; infinity where all are
 };
 
 PanelReach panel_reach(const PointPanel& panel, const Eigen::Vector3d& centre, double limit2);

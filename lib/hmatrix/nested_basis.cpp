@@ -74,18 +74,19 @@ class BasisMaker {
     return places;
   }
   static std::vector<Dof> vertex_dofs(const Cluster& leaf) { return all_components(places_of(leaf)); }
-  /// On two triangles a vertex, as many as a closed mesh has. The second is taken from the middle of what is left: at
-  /// an edge the first ones may all be on one face.
+  /// On all triangles around the leaf; from a tolerance of `coarse` on, which they meet, on two a vertex, as many as a
+  /// closed mesh has. The second is taken from the middle of what is left: at an edge the first ones may all be on one
+  /// face.
   std::vector<Dof> dipole_dofs(const Cluster& leaf) const {
+    constexpr double coarse = 1e-5;
     std::vector<std::int32_t> found, left;
     for (const std::int32_t place : places_of(leaf)) {
       left.clear();
       for (const std::int32_t t : triangles_[tree_.order()[place]]) {
         if (std::find(found.begin(), found.end(), t) == found.end()) left.push_back(t);
       }
-      if (left.empty()) continue;
-      found.push_back(left.front());
-      if (left.size() > 1) found.push_back(left[left.size() / 2]);
+      if (tolerance_ >= coarse && left.size() > 2) left = {left.front(), left[left.size() / 2]};
+      found.insert(found.end(), left.begin(), left.end());
     }
     return all_components(found);
   }

@@ -83,6 +83,7 @@ class Collocation {
   void for_each_panel(const Progress& progress, std::string_view stage, const Body& body) const;
   std::vector<std::int32_t> triangles_around(std::span<const std::int32_t> columns,
                                              std::span<const std::int32_t> slot_of) const;
+  template <class Real>
   static Reach reach(const Panel& panel, const SourceTriangle& triangle, const RuleLadder& ladder);
   template <class Real>
   void fill(RowMajorMatrix& H, const Progress& progress, std::span<AssemblyCounts> counts) const;

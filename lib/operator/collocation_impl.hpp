@@ -158,11 +158,16 @@ struct Collocation<Kernel>::ColumnBlock {
   detail::AlignedBuffer<Real> values_;  ///< [slot][entry][point]
 };
 
-/// Which points of a panel are near a triangle, and the Gauss rule that serves the others.
+/// Which points of a panel are near a triangle, and the Gauss rule that serves the others: one for each half where a
+/// vector holds half a panel.
 template <class Kernel>
 struct Collocation<Kernel>::Reach {
-  PanelMask near, far;
-  const TriangleRule* rule;
+  struct Far {
+    PanelMask mask;
+    const TriangleRule* rule;
+  };
+  PanelMask near;
+  Far far[2];
 };
 
 template <class Kernel>
@@ -236,10 +241,23 @@ std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const 
 }
 
 template <class Kernel>
+template <class Real>
 typename Collocation<Kernel>::Reach Collocation<Kernel>::reach(const Panel& panel, const SourceTriangle& triangle,
                                                                const RuleLadder& ladder) {
+  constexpr PanelMask first_half = (1u << kPanel / 2) - 1u;
   const PanelReach found = panel_reach(panel.points, triangle.centroid, ladder.near_ratio2() * triangle.radius2);
-  return {found.near & panel.mask(), ~found.near & panel.mask(), ladder.rule(found.closest2 / triangle.radius2)};
+  const PanelMask far = ~found.near & panel.mask();
+  const auto rule = [&](double closest2) { return ladder.rule(closest2 / triangle.radius2); };
+  const auto [first, second] = found.closest2;
+  Reach split{found.near & panel.mask(), {{far, rule(std::min(first, second))}, {0, nullptr}}};
+  if constexpr (std::is_same_v<Real, double>) {
+    const TriangleRule *of_first = rule(first), *of_second = rule(second);
+    if (of_first != of_second) {
+      split.far[0] = {far & first_half, of_first};
+      split.far[1] = {far & ~first_half, of_second};
+    }
+  }
+  return split;
 }
 
 template <class Kernel>
@@ -249,15 +267,16 @@ void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, detail::Gaus
   const SourceTriangle& triangle = sources_[t];
   const auto& v = triangles_[t];
   Real* const out[3] = {block.at(v[0]), block.at(v[1]), block.at(v[2])};
-  const auto [near_points, far_points, rule] = reach(panel, triangle, integral_.double_layer_rules());
+  const Reach split = reach<Real>(panel, triangle, integral_.double_layer_rules());
   block.counts.pairs += panel.count;
-  block.counts.near += static_cast<unsigned>(std::popcount(near_points));
+  block.counts.near += static_cast<unsigned>(std::popcount(split.near));
 
-  if (far_points != 0) {
+  for (const auto& [mask, rule] : split.far) {
+    if (mask == 0) continue;
     const SourcePoints points = gauss.of(triangle.geometry, *rule, {1, 1, 1});
-    add_double_layer(integral_.kernel(), panel.points, far_points, points, triangle.geometry.normal, out);
+    add_double_layer(integral_.kernel(), panel.points, mask, points, triangle.geometry.normal, out);
   }
-  for (PanelMask near = near_points; near != 0; near &= near - 1) {
+  for (PanelMask near = split.near; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
     const auto blocks = integral_.double_layer(triangle, panel.points.point(p));
     for (int c = 0; c < 3; ++c) {
@@ -273,12 +292,13 @@ void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const
   const SourceTriangle& triangle = sources_[t];
   const auto& v = triangles_[t];
   const Eigen::Vector3d density(value[v[0]], value[v[1]], value[v[2]]);
-  const auto [near_points, far_points, rule] = reach(panel, triangle, integral_.single_layer_rules());
-  if (far_points != 0) {
+  const Reach split = reach<double>(panel, triangle, integral_.single_layer_rules());
+  for (const auto& [mask, rule] : split.far) {
+    if (mask == 0) continue;
     const SourcePoints points = gauss.of(triangle.geometry, *rule, density);
-    add_single_layer(integral_.kernel(), panel.points, far_points, points, block.slot(0));
+    add_single_layer(integral_.kernel(), panel.points, mask, points, block.slot(0));
   }
-  for (PanelMask near = near_points; near != 0; near &= near - 1) {
+  for (PanelMask near = split.near; near != 0; near &= near - 1) {
     const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
     const auto blocks = integral_.single_layer(triangle, panel.points.point(p));
     const typename Kernel::Block sum = blocks[0] * density[0] + blocks[1] * density[1] + blocks[2] * density[2];
@@ -339,27 +359,32 @@ RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress
   return H;
 }
 
-/// Calls store(first, count, entries) for each panel of rows. A triangle is taken for all panels before the next, so
-/// that they share its Gauss points.
+/// Calls store(first, count, entries) for each panel of rows. Two are made at once: they share the triangles' Gauss
+/// points, and their entries stay in the second-level cache.
 template <class Kernel>
 template <class Real, class Store>
 void Collocation<Kernel>::make_panels(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
                                       const Store& store) const {
+  constexpr std::size_t together = 2;
   thread_local std::vector<std::int32_t> slots;
-  thread_local std::vector<ColumnBlock<Real>> blocks;
+  thread_local ColumnBlock<Real> blocks[together];
   slots.resize(std::max(slots.size(), vertices_.size()), -1);
   for (std::size_t c = 0; c < columns.size(); ++c) slots[columns[c]] = static_cast<std::int32_t>(c);
-  std::vector<Panel> panels;
-  for (std::size_t first = 0; first < rows.size(); first += kPanel) {
-    panels.emplace_back(vertices_, rows.subspan(first, std::min(kPanel, rows.size() - first)));
-  }
-  blocks.resize(std::max(blocks.size(), panels.size()));
-  for (std::size_t k = 0; k < panels.size(); ++k) blocks[k].prepare(slots, columns.size());
+  const std::vector<std::int32_t> triangles = triangles_around(columns, slots);
+
   detail::GaussPoints gauss;
-  for (const std::int32_t t : triangles_around(columns, slots)) {
-    for (std::size_t k = 0; k < panels.size(); ++k) add_triangle(panels[k], t, gauss, blocks[k]);
+  std::vector<Panel> panels;
+  for (std::size_t first = 0; first < rows.size(); first += together * kPanel) {
+    panels.clear();
+    for (std::size_t row = first; row < std::min(rows.size(), first + together * kPanel); row += kPanel) {
+      blocks[panels.size()].prepare(slots, columns.size());
+      panels.emplace_back(vertices_, rows.subspan(row, std::min(kPanel, rows.size() - row)));
+    }
+    for (const std::int32_t t : triangles) {
+      for (std::size_t k = 0; k < panels.size(); ++k) add_triangle(panels[k], t, gauss, blocks[k]);
+    }
+    for (std::size_t k = 0; k < panels.size(); ++k) store(first + k * kPanel, panels[k].count, blocks[k].slot(0));
   }
-  for (std::size_t k = 0; k < panels.size(); ++k) store(k * kPanel, panels[k].count, blocks[k].slot(0));
   for (const std::int32_t v : columns) slots[v] = -1;
 }
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 #include <skinbem/kernels/panel_reach.hpp>
 
 namespace skinbem {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TEST(PanelReach, IsThatOfTheSingleDistances) {
   std::mt19937 random(1);
@@ -21,21 +24,24 @@ TEST(PanelReach, IsThatOfTheSingleDistances) {
     const Eigen::Vector3d centre(uniform(random), uniform(random), uniform(random));
     const double limit2 = 4 * std::abs(uniform(random));
     PanelMask near = 0;
-    double closest2 = std::numeric_limits<double>::infinity();
+    double closest2[2] = {infinity, infinity};
     for (std::size_t p = 0; p < kPanel; ++p) {
       const double distance2 = (panel.point(p) - centre).squaredNorm();
       if (distance2 < limit2) {
         near |= 1u << p;
       } else {
-        closest2 = std::min(closest2, distance2);
+        double& closest = closest2[p / (kPanel / 2)];
+        closest = std::min(closest, distance2);
       }
     }
     const PanelReach found = panel_reach(panel, centre, limit2);
     ASSERT_EQ(found.near, near);
-    if (std::isinf(closest2)) {
-      ASSERT_EQ(found.closest2, closest2);
-    } else {
-      ASSERT_NEAR(found.closest2, closest2, 1e-15 * 12);  // of the largest squared distance
+    for (int half = 0; half < 2; ++half) {
+      if (std::isinf(closest2[half])) {
+        ASSERT_EQ(found.closest2[half], infinity);
+      } else {
+        ASSERT_NEAR(found.closest2[half], closest2[half], 1e-15 * 12);  // of the largest squared distance
+      }
     }
   }
 }
@@ -48,10 +54,12 @@ TEST(PanelReach, SaysWhereAllAreNearOrNone) {
   }
   const PanelReach all = panel_reach(panel, Eigen::Vector3d::Zero(), 1e3);
   EXPECT_EQ(all.near, (1u << kPanel) - 1);
-  EXPECT_EQ(all.closest2, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(all.closest2[0], infinity);
+  EXPECT_EQ(all.closest2[1], infinity);
   const PanelReach none = panel_reach(panel, Eigen::Vector3d::Zero(), 1);  // as far as the limit is not near
   EXPECT_EQ(none.near, 0u);
-  EXPECT_EQ(none.closest2, 1);
+  EXPECT_EQ(none.closest2[0], 1);
+  EXPECT_EQ(none.closest2[1], std::pow(1 + kPanel / 2, 2));
 }
 
 }  // namespace
