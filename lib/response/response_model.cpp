@@ -107,8 +107,8 @@ struct ResponseModel::State {
   static constexpr double on_a_line = 1e-6;
   /// On the product of the size of the defects and what such defects do: measured, 0.9 to 2.5 times the error.
   static constexpr double safety = 1.5;
-  /// R errs at least eight times less than the tolerance of H (docs/accuracy.md).
-  static constexpr double compressed_quadrature = 0.125;
+  /// R errs at least seven times less than the tolerance of H (docs/accuracy.md).
+  static constexpr double compressed_quadrature = 1.0 / 7;
 
   void check(const Landmark& landmark, Index replaced) const {
     for (Index k = 0; k < Index(greens.size()); ++k) {
