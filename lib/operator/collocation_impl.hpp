@@ -247,7 +247,9 @@ typename Collocation<Kernel>::Reach Collocation<Kernel>::reach(const Panel& pane
   constexpr PanelMask first_half = (1u << kPanel / 2) - 1u;
   const PanelReach found = panel_reach(panel.points, triangle.centroid, ladder.near_ratio2() * triangle.radius2);
   const PanelMask far = ~found.near & panel.mask();
-  const auto rule = [&](double closest2) { return ladder.rule(closest2 / triangle.radius2); };
+  const auto rule = [&](double closest2) {  // rounding must not bring it below the last rung
+    return ladder.rule(std::max(closest2 / triangle.radius2, ladder.near_ratio2()));
+  };
   const auto [first, second] = found.closest2;
   Reach split{found.near & panel.mask(), {{far, rule(std::min(first, second))}, {0, nullptr}}};
   if constexpr (std::is_same_v<Real, double>) {
