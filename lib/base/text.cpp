@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <skinbem/base/text.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -29,8 +30,28 @@ std::optional<Number> parse(std::string_view text) {
 
 }  // namespace
 
+void require_text(std::string_view text, const std::string& name) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    throw Error(ErrorCode::bad_input, name + ":1: UTF-16 text, save it as ASCII or UTF-8");
+  }
+  const std::string_view head = text.substr(0, 4096);
+  const auto odd = std::find_if(head.begin(), head.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte < 0x20 && !(c >= '\t' && c <= '\r')) || byte == 0x7F;
+  });
+  if (odd != head.end()) {
+    const auto line = 1 + std::count(head.begin(), odd, '\n');
+    throw Error(ErrorCode::bad_input, name + ":" + std::to_string(line) +
+                                          ": binary data where text was expected, check the file and its extension");
+  }
+}
+
 TextFile::TextFile(const std::filesystem::path& path) : path_(path.string()), text_(read_file(path)) {
+  require_text(text_, path_);
   if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);
+  for (std::size_t i = 0; i < text_.size(); ++i) {  // a lone CR ends a line too
+    if (text_[i] == '\r' && text_.substr(i + 1, 1) != "\n") text_[i] = '\n';
+  }
   lines_ = split(text_, '\n');
   if (lines_.back().empty()) lines_.pop_back();
   for (std::string_view& line : lines_) {

@@ -12,10 +12,14 @@
 
 namespace skinbem {
 
-/// A text file as its lines (LF or CR LF; a byte order mark is dropped), and errors that name the place.
+/// Throws Error(bad_input) "name:line: ..." where the beginning of `text` is binary or UTF-16 data: garbage is best
+/// recognised there, before a message about some odd word in it would mislead.
+void require_text(std::string_view text, const std::string& name);
+
+/// A text file as its lines (LF, CR LF or CR; a byte order mark is dropped), and errors that name the place.
 class TextFile {
  public:
-  /// Throws Error(io) when the file cannot be read.
+  /// Throws Error(io) when the file cannot be read, Error(bad_input) when it is no text.
   explicit TextFile(const std::filesystem::path& path);
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <skinbem/mesh/text_scanner.hpp>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -18,23 +17,6 @@ bool is_newline(char c) { return c == '\n' || c == '\r'; }
 const char* after_newline(const char* p, const char* end) {
   const bool two = *p == '\r' && p + 1 < end && p[1] == '\n';
   return p + (two ? 2 : 1);
-}
-
-/// Garbage is best recognised at its beginning, before a message about some odd word in it would mislead.
-void require_text(std::string_view text, const std::string& name) {
-  if (text.empty()) throw Error(ErrorCode::bad_input, name + ": the file is empty, nothing to read");
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    throw Error(ErrorCode::bad_input, name + ":1: UTF-16 text, save it as ASCII or UTF-8");
-  }
-  const std::string_view head = text.substr(0, 4096);
-  const auto odd = std::find_if(head.begin(), head.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return (byte < 0x20 && !is_blank(c) && !is_newline(c)) || byte == 0x7F;
-  });
-  if (odd != head.end()) {
-    const auto line = 1 + std::count(head.begin(), odd, '\n');
-    fail_at_line(name, line, "binary data where text was expected, check the file and its extension");
-  }
 }
 
 }  // namespace
@@ -67,6 +49,7 @@ bool parse_integer(std::string_view word, std::int64_t& value) {
 
 TextScanner::TextScanner(std::string_view text, std::string name, Syntax syntax)
     : name_(std::move(name)), syntax_(syntax), line_(syntax.first_line), next_line_number_(syntax.first_line) {
+  if (text.empty()) throw Error(ErrorCode::bad_input, name_ + ": the file is empty, nothing to read");
   require_text(text, name_);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   next_ = text.data();
@@ -82,7 +65,7 @@ bool TextScanner::next_line() {
     const char* p = cursor_;
     for (; p < end_ && !is_newline(*p); ++p) {
       if (*p == syntax_.comment && !comment && syntax_.comment != '\0') comment = p;
-      if (syntax_.continuation && *p == '\\' && p + 1 < end_ && is_newline(p[1])) {
+      if (syntax_.continuation && !comment && *p == '\\' && p + 1 < end_ && is_newline(p[1])) {
         p = after_newline(p + 1, end_) - 1;
         ++next_line_number_;
       }

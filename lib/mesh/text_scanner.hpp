@@ -23,7 +23,7 @@ class TextScanner {
  public:
   struct Syntax {
     char comment = '\0';          ///< starts a comment that reaches to the end of the line; none when '\0'
-    bool continuation = false;    ///< a backslash at the end of a line joins the next line to it
+    bool continuation = false;    ///< a backslash at the end of a line, not of a comment, joins the next line to it
     std::int64_t first_line = 1;  ///< number of the text's first line
   };
 

@@ -104,6 +104,12 @@ TEST(ObjReader, RefusesEveryDefectOfTheFileWithItsLine) {
   EXPECT_THAT(refusal(parse_obj, "v 0 0 0 0 0\n"), StartsWith("m:1: "));
 }
 
+TEST(ObjReader, DoesNotContinueComments) {
+  expect_equal(
+      parse_obj("# saved to C:\\bodies\\\n" + obj_points + "f 1 3 2 # base \\\nf 1 2 4\nf 1 4 3\nf 2 3 4", "m"),
+      tetrahedron());
+}
+
 TEST(ObjReader, ReadsNumbersTooSmallForADoubleAndPlusSigns) {
   const TriangleMesh mesh = parse_obj("v +1 1e-400 -1e-330\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "m");
   EXPECT_EQ(mesh.vertices.row(0), Eigen::RowVector3d(1, 0, 0));
