@@ -23,7 +23,7 @@ const Wording& wording(DefectKind kind) {
       {"not_finite", "vertex with a coordinate that is not finite", "vertices with a coordinate that is not finite",
        "vertex #", "correct or remove it"},
       {"size_out_of_range", "the mesh is a single point or its size cannot be computed with", nullptr, "vertex #",
-       "scale it to a size and place between 1e-100 and 1e100"},
+       "scale it to a size and place between 1e-40 and 1e40"},
       {"duplicate_vertex", "duplicate vertex", "duplicate vertices", "vertex # where vertex # is",
        "merge vertices at equal positions (--weld)"},
       {"degenerate_triangle", "degenerate triangle", "degenerate triangles", "triangle #",

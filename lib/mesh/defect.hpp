@@ -16,7 +16,7 @@ enum class DefectKind {
   empty,                     ///< no vertices or no triangles
   index_out_of_range,        ///< a triangle refers to a vertex that does not exist
   not_finite,                ///< a coordinate is NaN or infinite
-  size_out_of_range,         ///< too large or too small for volumes in double precision, or a single point
+  size_out_of_range,         ///< too large or too small for double precision, or a single point
   duplicate_vertex,          ///< two vertices at exactly the same position
   degenerate_triangle,       ///< a vertex twice in it, or so thin that its plane is lost in rounding
   duplicate_triangle,        ///< the same three vertices as an earlier triangle, in any order

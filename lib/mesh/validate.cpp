@@ -72,7 +72,7 @@ class Inspector {
     }
     Index farthest = 0;
     const double reach = mesh_.vertices.cwiseAbs().rowwise().maxCoeff().maxCoeff(&farthest);
-    constexpr double largest = 1e100, smallest = 1e-100;  // their cubes are safe from overflow and underflow
+    constexpr double largest = 1e40, smallest = 1e-40;  // high powers of them and of much shorter edges are doubles
     if (reach <= largest && diagonal(mesh_) >= smallest) return true;
     add_vertex(DefectKind::size_out_of_range, farthest);
     return false;

@@ -185,7 +185,11 @@ TEST(Validate, SurvivesExtremeCoordinates) {
   EXPECT_EQ(defect_of(stretched(icosphere(3), Vec3::Zero())).kind, DefectKind::size_out_of_range);
   EXPECT_THAT(kinds(stretched(icosphere(3), {1, 1, 0})), Not(IsEmpty()));
   EXPECT_THAT(kinds(stretched(icosphere(3), {1, 0, 0})), Not(IsEmpty()));
-  EXPECT_THAT(kinds(stretched(icosphere(1), Vec3::Constant(1e99))), IsEmpty());
+  for (const double size : {1e-50, 1e50, 1e-99, 1e99}) {
+    EXPECT_EQ(defect_of(stretched(tetrahedron(), Vec3::Constant(size))).kind, DefectKind::size_out_of_range);
+  }
+  EXPECT_THAT(kinds(stretched(icosphere(1), Vec3::Constant(1e39))), IsEmpty());
+  EXPECT_THAT(kinds(stretched(icosphere(1), Vec3::Constant(1e-39))), IsEmpty());
 }
 
 TEST(SelfIntersection, CountsTouchingOverlappingAndFoldedTriangles) {
