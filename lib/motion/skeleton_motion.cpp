@@ -10,6 +10,8 @@
 namespace skinbem {
 namespace {
 
+constexpr int most_frames = 1'000'000;  // hours of motion; the files of a sequence are numbered with six digits
+
 /// Frame `f` and the fraction towards the next one.
 struct Moment {
   Index frame;
@@ -76,12 +78,17 @@ SkeletonMotion resampled(const SkeletonMotion& motion, double frames_per_second,
                                       " s, the motion goes from " + std::to_string(motion.first_time) + " to " +
                                       std::to_string(last_time) + " s");
   }
+  const double slack = 1e-6;  // of a frame: times are sums of rounded steps
+  const double steps = std::floor((end - begin) * rate + slack);
+  if (!(steps < most_frames)) {
+    throw Error(ErrorCode::usage, "more than " + std::to_string(most_frames) +
+                                      " frames, ask for fewer a second or for a shorter part of the motion");
+  }
   SkeletonMotion result = motion;
   result.frames_per_second = rate;
   result.first_time = begin;
   result.segments.clear();
-  const double slack = 1e-6;  // of a frame: times are sums of rounded steps
-  const Index count = static_cast<Index>(std::floor((end - begin) * rate + slack)) + 1;
+  const Index count = static_cast<Index>(steps) + 1;
   result.marker_moves.resize(count, motion.marker_moves.cols());
   for (Index i = 0; i < count; ++i) {
     double at = (begin - motion.first_time + static_cast<double>(i) / rate) * motion.frames_per_second;

@@ -48,7 +48,7 @@ SkeletonMotion move_by_markers(const Rig& rig, const TrcMotion& motion);
 
 /// The same motion from `from` to `to` seconds (of the motion file) at `frames_per_second` (0: as it is). Between
 /// frames every segment turns about its joint against its parent, along the shortest arc; the root's joint goes
-/// straight. Throws Error(usage) when nothing is left.
+/// straight. Throws Error(usage) when nothing is left, and for more than a million frames.
 SkeletonMotion resampled(const SkeletonMotion& motion, double frames_per_second,
                          double from = -std::numeric_limits<double>::infinity(),
                          double to = std::numeric_limits<double>::infinity());

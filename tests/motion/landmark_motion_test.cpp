@@ -188,6 +188,7 @@ TEST(Resampling, KeepsJointsTogetherAndFramesOfTheFile) {
   EXPECT_EQ(part.first_time, 0.02);
   EXPECT_EQ(part.segments[0][0].translation, motion.segments[2][0].translation);
   EXPECT_THROW(resampled(motion, 0, 0.5, 0.6), Error);
+  for (const double too_many : {1e9, 1e300}) EXPECT_THROW(resampled(motion, too_many), Error);
 }
 
 class Modes : public ::testing::Test {
