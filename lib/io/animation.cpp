@@ -12,10 +12,6 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw Error(ErrorCode::usage, "animation: " + what);
 }
 
-void require_finite(bool finite, const std::string& what) {
-  if (!finite) throw Error(ErrorCode::numerical, "animation: " + what + " is not finite, nothing was written");
-}
-
 bool finite(const std::vector<RigidMotion>& motions) {
   for (const RigidMotion& motion : motions) {
     if (!motion.rotation.allFinite() || !motion.translation.allFinite()) return false;
@@ -28,6 +24,10 @@ Points moved(const Points& points, const RigidMotion& motion) {
 }
 
 }  // namespace
+
+void require_finite(bool finite, const std::string& what) {
+  if (!finite) throw Error(ErrorCode::numerical, "animation: " + what + " is not finite, nothing was written");
+}
 
 Points skin_vertices(const SkinAnimation& skin, Index f) {
   Points points = skin.rest.vertices;

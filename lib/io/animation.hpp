@@ -39,5 +39,7 @@ TriangleMesh bones_mesh(const std::vector<MovingBone>& bones, Index f);
 /// Throws Error(usage) when there is no frame, sizes disagree or the times do not increase, and Error(numerical) when a
 /// number is not finite: a frame with NaN is never written.
 void validate(const SkinAnimation& skin, const std::vector<MovingBone>& bones);
+/// Throws Error(numerical) "animation: `what` is not finite ..." where it is not; for what is rounded to float too.
+void require_finite(bool finite, const std::string& what);
 
 }  // namespace skinbem

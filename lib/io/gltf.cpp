@@ -32,6 +32,7 @@ class GlbBuilder {
   /// Adds rows of floats as one accessor of `type` and returns its index; `bounds` adds min and max, computed from the
   /// floats that are stored, as the validator compares them exactly.
   std::size_t add(const RowsF& rows, const char* type, bool bounds, int target = 0) {
+    require_finite(rows.allFinite(), "a number in single precision");
     const std::size_t count = std::strcmp(type, "SCALAR") == 0 ? rows.size() : rows.rows();
     json accessor = {{"bufferView", view(rows.data(), sizeof(float) * rows.size(), target)},
                      {"componentType", component_float},

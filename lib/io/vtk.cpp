@@ -33,6 +33,7 @@ class Appended {
 
 std::string points_array(Appended& appended, const char* name, const Points& points) {
   const PointsF rows = points.cast<float>();
+  require_finite(rows.allFinite(), "a point in single precision");
   return appended.array("Float32", name, 3, rows.data(), sizeof(float) * static_cast<std::uint64_t>(rows.size()));
 }
 

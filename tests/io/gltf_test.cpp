@@ -116,6 +116,17 @@ TEST(Gltf, AViewersFrameIsTheModelsFrame) {
   }
 }
 
+TEST(Gltf, NothingIsWrittenThatIsNotFiniteInFloats) {
+  TemporaryFolder folder;
+  SkinAnimation skin = small_skin(2);
+  skin.body[1].translation *= 1e60;
+  EXPECT_THROW(write_glb(folder / "a.glb", skin), Error);
+  skin = small_skin(2);
+  skin.times[1] = 1e60;
+  EXPECT_THROW(write_glb(folder / "a.glb", skin), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(Gltf, BonesFollowTheirMotionAndKeysAreContinuous) {
   TemporaryFolder folder;
   const Index frames = 40;
