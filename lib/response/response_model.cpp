@@ -105,6 +105,9 @@ struct ResponseModel::State {
   static QuadratureOptions quadrature_for(double tolerance) { return {tolerance}; }
   /// Ratio of the second to the first extent of landmarks: the error of a rotation about their line is its inverse.
   static constexpr double on_a_line = 1e-6;
+  /// Reciprocal condition of the landmarks' system: measured, 1e-4 to 1e-2 on the leg and on boxes, 4e-7 where a patch
+  /// is half of the leg, 1e-6 for three neighbouring vertices; below 1e-11 R errs by more than its tolerance.
+  static constexpr double told_apart = 1e-11;
   /// On the product of the size of the defects and what such defects do: measured, 0.9 to 2.5 times the error.
   static constexpr double safety = 1.5;
   /// R errs at least seven times less than the tolerance of H (docs/accuracy.md).
@@ -217,11 +220,12 @@ struct ResponseModel::State {
     system.topRightCorner(n, 6) = measure(B);
     for (Index k = 0; k < Index(greens.size()); ++k) system.block<6, 3>(n, 3 * k) = greens[k].L;
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
-    Eigen::MatrixXd solution = lu.solve(Eigen::MatrixXd::Identity(n + 6, n));
-    if (!solution.allFinite()) {
-      throw Error(ErrorCode::numerical, "the landmarks' system is singular; are two landmarks at the same place?");
+    if (!(lu.rcond() > told_apart)) {
+      throw Error(ErrorCode::bad_input,
+                  "the landmarks cannot be told apart: they are too near to each other, or so wide that they share one "
+                  "patch; lower the radius, check its unit, or move the landmarks");
     }
-    return solution;
+    return lu.solve(Eigen::MatrixXd::Identity(n + 6, n));
   }
 
   /// After a change of landmarks: estimates the error of R, and compresses less where it is too large. Throws

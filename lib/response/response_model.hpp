@@ -91,7 +91,8 @@ class ResponseModel {
   Points landmark_positions() const;
 
   /// R, 3N by 3Nk: rows node-major, columns landmark-major, x, y, z. u = R u_K with u_K the landmarks' displacements.
-  /// Throws Error(bad_input) for fewer than three landmarks, or landmarks on a line.
+  /// Throws Error(bad_input) for fewer than three landmarks, landmarks on a line, or landmarks that cannot be told
+  /// apart.
   Eigen::MatrixXd response() const;
   /// 3Nk by 3Nk: the tractions t_k (at the landmark's vertex, times phi elsewhere) for unit displacements, at shear
   /// modulus 1 and the mesh's unit of length; proportional to shear modulus / length. Throws like response.

@@ -129,6 +129,12 @@ TEST_F(Response, LandmarksThatCannotHoldABodyAreNamed) {
   EXPECT_THAT(written(), testing::ElementsAre("landmarks.csv"));
 }
 
+TEST_F(Response, RadiusInAnotherUnitIsRefused) {
+  expect_failure(run(box_to("R.npy") + Arguments{"--radius", "15000"}), 3,
+                 "box_landmarks.csv: the landmarks cannot be told apart");
+  EXPECT_TRUE(written().empty());
+}
+
 TEST_F(Response, LandmarksOnALineAreRefused) {
   // Three vertices of an edge of a 2 by 1 by 1 box of which the long edges are halved.
   const std::string mesh =

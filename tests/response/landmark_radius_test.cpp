@@ -32,6 +32,14 @@ TEST(LandmarkRadius, BelowTheShortestEdgeIsAPointLandmark) {
   EXPECT_EQ(response_of(mesh, landmarks, 1e-8), response_of(mesh, landmarks_on(kPlaces), 1e-8));
 }
 
+TEST(LandmarkRadius, SoLargeThatAllShareOnePatchIsRefused) {
+  const TriangleMesh mesh = icosphere(2);
+  EXPECT_NO_THROW(response_of(mesh, landmarks_on(kPlaces, 5), 1e-6));
+  for (const double radius : {3e3, 1e5, 1e9, 1e200}) {
+    EXPECT_THROW(response_of(mesh, landmarks_on(kPlaces, radius), 1e-6), Error) << radius;
+  }
+}
+
 TEST(LandmarkRadius, MeasuresTheMeanOfItsPatchWhichFollowsThePrescribedDisplacement) {
   const TriangleMesh mesh = icosphere(2);
   const double radius = 0.6;
