@@ -82,16 +82,16 @@ void add_motion_options(CLI::App& command, AnimationOptions& a) {
   command.add_option("--artefact", a.artefact.kind, "Sliding of the skin: none (default), trial, correlated or frame")
       ->transform(word(artefacts))
       ->option_text("KIND");
-  command.add_option("--artefact-mean", a.artefact.mean, "Unit of the mesh")->capture_default_str();
-  command.add_option("--artefact-sigma", a.artefact.sigma, "Unit of the mesh")->capture_default_str();
+  command.add_option("--artefact-mean", a.artefact.mean, "Unit of the mesh")->check(number())->capture_default_str();
+  command.add_option("--artefact-sigma", a.artefact.sigma, "Unit of the mesh")->check(number())->capture_default_str();
   command.add_option("--seed", a.artefact.seed, "Of the artefact")
       ->check(
           number([](double value) { return value >= 0 && value == std::floor(value); }, "a whole number, zero or more"))
       ->capture_default_str();
   command.add_option("--fps", a.fps, "Frames a second; that of the motion when not given")
       ->check(number([](double value) { return value > 0; }, "a positive number"));
-  command.add_option("--from", a.from, "Seconds of the motion file");
-  command.add_option("--to", a.to, "Seconds of the motion file");
+  command.add_option("--from", a.from, "Seconds of the motion file")->check(number());
+  command.add_option("--to", a.to, "Seconds of the motion file")->check(number());
   command.add_option("--skin", a.fine_skin, "A finer skin of the same body, driven by the response of MESH");
   command.add_option("--bones", a.bones, "Folder of bones that move along");
 }

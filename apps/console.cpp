@@ -35,10 +35,14 @@ void end_progress() {
   progress_shown = false;
 }
 
+void require_name(const std::filesystem::path& output) {
+  if (output.empty()) throw skinbem::Error(skinbem::ErrorCode::usage, "the output has no name, give one after -o");
+}
+
 void require_writable(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
   namespace fs = std::filesystem;
   using skinbem::Error, skinbem::ErrorCode;
-  if (output.empty()) throw Error(ErrorCode::usage, "the output has no name, give one after -o");
+  require_name(output);
   const fs::path place = output.has_filename() ? output : output.parent_path();
   const fs::path parent = place.has_parent_path() ? place.parent_path() : fs::path(".");
   if (!fs::is_directory(parent)) {

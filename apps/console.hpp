@@ -17,6 +17,8 @@ skinbem::Progress terminal_progress();
 /// Wipes that line.
 void end_progress();
 
+/// Throws Error(usage) when `output` has no name.
+void require_name(const std::filesystem::path& output);
 /// What a run writes is checked before hours are spent on what it should hold. Throws Error(io) when `output` cannot be
 /// created, Error(usage) when it has no name or is one of the `inputs`, which it would replace.
 void require_writable(const std::filesystem::path& output, const std::vector<std::string>& inputs);

@@ -80,6 +80,7 @@ void draw_strip(const fs::path& path, const Animation& animation, const Motion& 
 }
 
 void demo(const fs::path& folder) {
+  require_name(folder);
   const fs::path limb = folder / "lower_limb";
   unpack_limb(limb);
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 
 #include <skinbem/base/error.hpp>
@@ -48,6 +49,12 @@ int run(int argc, char** argv) {
   return 0;
 }
 
+/// What was printed may still lie in a buffer: a full disk is noticed here or nowhere.
+void flush_results() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw skinbem::Error(skinbem::ErrorCode::io, "standard output: cannot write the results, check where they go");
+}
+
 int fail(const std::string& message, int code) {
   end_progress();
   fmt::print(stderr, "skinbem: {}\n", message);
@@ -60,6 +67,7 @@ int main(int argc, char** argv) {
   try {
     const int code = run(argc, argv);
     end_progress();
+    flush_results();
     return code;
   } catch (const skinbem::Error& error) {
     return fail(error.what(), static_cast<int>(error.code()));

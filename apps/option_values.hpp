@@ -36,3 +36,8 @@ CLI::Validator number(Predicate holds, const std::string& what) {
       },
       "", "number");
 }
+
+/// Any number: without a check, nothing at all would be taken for 0.
+inline CLI::Validator number() {
+  return number([](double) { return true; }, "a finite number");
+}

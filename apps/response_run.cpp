@@ -93,7 +93,9 @@ void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
 void add_response_options(CLI::App& command, ResponseRunOptions& options) {
   command.add_option("MESH", options.mesh, "Closed triangle mesh: OBJ, OFF, STL or PLY")->required();
   command.add_option("--landmarks", options.landmarks, "CSV with name and vertex and/or x,y,z")->required();
-  command.add_option("--poisson", options.poisson, "Poisson's ratio in (-1, 0.5]")->capture_default_str();
+  command.add_option("--poisson", options.poisson, "Poisson's ratio in (-1, 0.5]")
+      ->check(number())
+      ->capture_default_str();
   command.add_option("--radius", options.radius, "Of landmarks whose file gives none, unit of the mesh; 0: a point")
       ->check(number([](double value) { return value >= 0; }, "a length, zero or more"))
       ->capture_default_str();
@@ -107,6 +109,7 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
       ->check(number([](double value) { return value >= 0; }, "a size in GB, zero or more"))
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance, "Relative error of the response, 1e-12 to 1e-1")
+      ->check(number())
       ->capture_default_str();
   command.add_option("--threads", options.threads, "0: as many as there are")
       ->check(number([](double value) { return value >= 0 && value <= most_threads; },

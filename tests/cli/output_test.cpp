@@ -36,7 +36,16 @@ TEST_F(Output, InAFolderWithoutPermissionIsCode5) {
   fs::permissions(path("locked"), fs::perms::owner_all);
 }
 
-TEST_F(Output, WithoutANameIsCode2) { expect_failure(response_to(""), 2, "no name"); }
+TEST_F(Output, WithoutANameIsCode2) {
+  expect_failure(response_to(""), 2, "no name");
+  expect_failure(run({"demo", "-o", ""}), 2, "no name");
+}
+
+TEST_F(Output, OfResultsThatCannotBePrintedIsCode5) {
+  for (const Arguments& arguments : {Arguments{"info"}, {"--help"}, {"check", shipped("tests/reference/box.obj")}}) {
+    expect_failure(run_into("/dev/full", arguments), 5, "standard output: cannot write");
+  }
+}
 
 TEST_F(Output, NeverReplacesAnInput) {
   const std::string mesh = file("b.obj", read_file(shipped("tests/reference/box.obj")));

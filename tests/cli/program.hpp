@@ -38,12 +38,15 @@ inline Arguments operator+(Arguments a, const Arguments& b) {
 /// A folder to write into, and the program.
 class Program : public testing::Test {
  protected:
-  Outcome run(const Arguments& arguments) {
+  Outcome run(const Arguments& arguments) { return run_into(logs_ / "out", arguments); }
+
+  /// The same with standard output in another file.
+  Outcome run_into(const std::string& out, const Arguments& arguments) {
     std::vector<std::string> words = Arguments{SKINBEM_PROGRAM} + arguments;
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    const std::string out = logs_ / "out", err = logs_ / "err";
+    const std::string err = logs_ / "err";
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -55,7 +58,8 @@ class Program : public testing::Test {
     if (failed != 0) return {};
     int status = 0;
     waitpid(process, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out), read_file(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            fs::is_regular_file(out) ? read_file(out) : "", read_file(err)};
   }
 
   /// Writes a file into the folder and returns its path.

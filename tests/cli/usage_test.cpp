@@ -45,9 +45,10 @@ TEST_F(Usage, WrongCommandsAndOptionsAreNamedWithCode2) {
 
 TEST_F(Usage, ValuesOutOfRangeAreNamedWithCode2AndWriteNothing) {
   const std::vector<std::pair<const char*, const char*>> wrong{
-      {"--poisson", "0.7"}, {"--poisson", "-1"},     {"--poisson", "nan"},   {"--poisson", "abc"}, {"--tolerance", "0"},
-      {"--tolerance", "1"}, {"--tolerance", "nan"},  {"--radius", "-1"},     {"--radius", "inf"},  {"--threads", "-1"},
-      {"--threads", "1.5"}, {"--threads", "100000"}, {"--solver", "direct"}, {"--memory", "-1"},   {"--memory", "1e-6"},
+      {"--poisson", "0.7"},    {"--poisson", "-1"},    {"--poisson", "nan"}, {"--poisson", "abc"},
+      {"--poisson", ""},       {"--tolerance", "0"},   {"--tolerance", "1"}, {"--tolerance", "nan"},
+      {"--radius", "-1"},      {"--radius", "inf"},    {"--threads", "-1"},  {"--threads", "1.5"},
+      {"--threads", "100000"}, {"--solver", "direct"}, {"--memory", "-1"},   {"--memory", "1e-6"},
   };
   for (const auto& [option, value] : wrong) {
     const Outcome outcome = run(Arguments{"response"} + box() + Arguments{"-o", path("R.npy"), option, value});
@@ -66,11 +67,12 @@ TEST_F(Usage, ValuesOfAnimateOutOfRangeAreNamedWithCode2) {
   const Arguments animate = Arguments{"animate"} + box() + Arguments{"--motion", shipped("data/lower_limb/walk.bvh"),
                                                                      "--rig",    shipped("data/lower_limb/rig.toml"),
                                                                      "-o",       path("a.glb")};
-  const std::vector<std::pair<const char*, const char*>> wrong{{"--mode", "foo"},     {"--frame", "foo"},
-                                                               {"--artefact", "foo"}, {"--fps", "0"},
-                                                               {"--seed", "-1"},      {"--seed", "1.5"}};
+  const std::vector<std::pair<const char*, const char*>> wrong{
+      {"--mode", "foo"}, {"--frame", "foo"}, {"--artefact", "foo"}, {"--fps", "0"},         {"--seed", "-1"},
+      {"--seed", "1.5"}, {"--from", ""},     {"--to", "nan"},       {"--artefact-mean", ""}};
   for (const auto& [option, value] : wrong) expect_failure(run(animate + Arguments{option, value}), 2, option);
   expect_failure(run(animate + Arguments{"--from", "a"}), 2, "--from");
+  expect_failure(run(animate + Arguments{"--fps", "1e9"}), 2, "more than 1000000 frames");
   EXPECT_TRUE(written().empty());
 }
 
