@@ -13,13 +13,15 @@
 #include <skinbem/response/landmark_patch.hpp>
 #include <skinbem/response/landmark_table.hpp>
 #include <skinbem/response/response_model.hpp>
+#include <skinbem/solve/rigid_modes.hpp>
 
 #include "console.hpp"
 #include "option_values.hpp"
 
 namespace {
 
-constexpr int most_threads = 1024;  // many more and the OpenMP run time crashes
+constexpr double not_of_these = 1e-4;  // rigid error of a response that is not of this mesh and these landmarks
+constexpr int most_threads = 1024;     // many more and the OpenMP run time crashes
 
 using skinbem::Error;
 using skinbem::ErrorCode;
@@ -38,6 +40,17 @@ void read_inputs(const ResponseRunOptions& options, ResponseRun& run) {
   run.landmarks = std::move(table.landmarks);
 }
 
+/// Landmarks that move as one rigid body move the skin as that body: how far `run.response` is from doing so, relative
+/// to the motion.
+double rigid_error(const ResponseRun& run) {
+  const Index vertices = run.mesh.vertex_count(), landmarks = run.positions.rows();
+  skinbem::Points all(vertices + landmarks, 3);
+  all << run.mesh.vertices, run.positions;
+  const Eigen::MatrixXd modes = skinbem::rigid_modes(all);
+  const auto skin = modes.topRows(3 * vertices), moved = modes.bottomRows(3 * landmarks);
+  return (run.response * moved - skin).cwiseAbs().maxCoeff() / skin.cwiseAbs().maxCoeff();
+}
+
 /// R from a file of an earlier run, for the same mesh and landmarks.
 void read_response(const ResponseRunOptions& options, const std::string& file, ResponseRun& run) {
   run.report.solver = "file";
@@ -54,6 +67,12 @@ void read_response(const ResponseRunOptions& options, const std::string& file, R
   for (Index k = 0; k < run.positions.rows(); ++k) {
     const auto patch = skinbem::make_patch(run.mesh, neighbours, areas, run.landmarks[static_cast<std::size_t>(k)]);
     run.positions.row(k) = patch.measure(run.mesh.vertices).transpose();
+  }
+  if (!(rigid_error(run) < not_of_these)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: does not move {} along with a rigid motion of {}: it is damaged or of another mesh, "
+                            "other landmarks or another --radius; make it anew with `skinbem response`",
+                            file, options.mesh, options.landmarks));
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -204,6 +205,35 @@ TEST_F(Animate, InputsThatCannotBeAreNamed) {
   fs::rename(path("box.npy"), response);
   expect_failure(with(walk_file, rig_file), 3, "R.npy: is 54 by 9");
   EXPECT_FALSE(fs::exists(path("a.glb")));
+}
+
+TEST_F(Animate, ResponseOfOtherLandmarksOrDamagedIsRefused) {
+  ASSERT_NE(glb(), "");
+  const std::string good = read_file(path("R.npy")), of_others = "R.npy: does not move ";
+  for (const double wrong : {1e300, 0.25}) {
+    std::string bytes = good;
+    std::memcpy(&bytes[bytes.size() - 8000], &wrong, sizeof wrong);
+    file("R.npy", bytes);
+    expect_failure(animate("b.glb"), 3, of_others);
+  }
+  file("R.npy", good);
+  const auto with = [&](std::size_t argument, const std::string& other) {
+    Arguments arguments = limb();
+    arguments[argument] = other;
+    return run(arguments + walk() + Arguments{"--response", path("R.npy"), "-o", path("b.glb")});
+  };
+  const std::string table = read_file(shipped("data/lower_limb/landmarks.csv"));
+  const std::size_t first = table.find('\n') + 1, second = table.find('\n', first) + 1;
+  const std::string rotated = table.substr(0, first) + table.substr(second) + table.substr(first, second - first);
+  expect_failure(with(3, file("rotated.csv", rotated)), 3, of_others);
+  expect_failure(with(5, "0"), 3, of_others);
+  EXPECT_FALSE(fs::exists(path("b.glb")));
+}
+
+TEST_F(Animate, NumbersBeyondFloatsAreNotWritten) {
+  const Arguments far{"--artefact", "trial", "--artefact-sigma", "1e60"};
+  for (const char* output : {"a.glb", "a.pvd"}) expect_failure(animate(output, far), 4, "not finite");
+  EXPECT_THAT(written(), ElementsAre("R.npy"));
 }
 
 }  // namespace
