@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include <skinbem/base/error.hpp>
 
@@ -73,6 +74,9 @@ int main(int argc, char** argv) {
     return fail(error.what(), static_cast<int>(error.code()));
   } catch (const std::bad_alloc&) {
     return fail("out of memory, use a coarser mesh", static_cast<int>(skinbem::ErrorCode::numerical));
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error.path1().string() + ": " + error.code().message() + ", check the path and its permissions",
+                static_cast<int>(skinbem::ErrorCode::io));
   } catch (const std::exception& error) {
     return fail(error.what(), static_cast<int>(skinbem::ErrorCode::io));
   }

@@ -41,6 +41,12 @@ TEST_F(Output, WithoutANameIsCode2) {
   expect_failure(run({"demo", "-o", ""}), 2, "no name");
 }
 
+TEST_F(Output, WithANameTooLongIsCode5) {
+  const std::string name = path(std::string(300, 'x') + ".obj"), why = name + ": File name too long, check the path";
+  expect_failure(response_to(name), 5, why);
+  expect_failure(run({"check", name}), 5, why);
+}
+
 TEST_F(Output, OfResultsThatCannotBePrintedIsCode5) {
   for (const Arguments& arguments : {Arguments{"info"}, {"--help"}, {"check", shipped("tests/reference/box.obj")}}) {
     expect_failure(run_into("/dev/full", arguments), 5, "standard output: cannot write");
