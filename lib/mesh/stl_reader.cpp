@@ -60,12 +60,15 @@ TriangleMesh parse_binary(std::string_view text, const std::string& name) {
   return mesh_of_corners(coordinates, name);
 }
 
-/// The next word, in small letters, must be `wanted`.
+/// Whether `word`, in small letters, is `keyword`.
+bool is(std::string_view word, std::string_view keyword) {
+  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
 void expect(TextScanner& scanner, const char* wanted) {
   const std::string_view word = scanner.word(wanted);
-  const bool same = std::equal(word.begin(), word.end(), wanted, wanted + std::strlen(wanted),
-                               [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
-  if (!same) scanner.fail(in_quotes(word) + " where '" + wanted + "' was expected, correct the file");
+  if (!is(word, wanted)) scanner.fail(in_quotes(word) + " where '" + wanted + "' was expected, correct the file");
 }
 
 void next_line(TextScanner& scanner, const char* wanted) {
@@ -105,9 +108,9 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& name) {
     for (;;) {
       next_line(scanner, "endsolid");
       const std::string_view word = scanner.word("facet");
-      if (word == "facet" || word == "FACET") {
+      if (is(word, "facet")) {
         read_facet(scanner, coordinates);
-      } else if (word == "endsolid" || word == "ENDSOLID") {
+      } else if (is(word, "endsolid")) {
         break;
       } else {
         scanner.fail(in_quotes(word) + " where 'facet' or 'endsolid' was expected, correct the file");

@@ -234,11 +234,15 @@ TEST(StlReader, TellsBinaryFromTextByItsSizeAndContentNotByItsFirstWord) {
   EXPECT_EQ(parse_stl(binary, "m").triangle_count(), 4);
   binary.pop_back();
   EXPECT_THAT(refusal(parse_stl, binary), HasSubstr("truncated"));
-  EXPECT_EQ(parse_stl("SOLID\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 "
-                      "0\nENDLOOP\nENDFACET\nENDSOLID\n",
-                      "m")
-                .triangle_count(),
-            1);
+}
+
+TEST(StlReader, TakesKeywordsInAnyLetters) {
+  for (const char* text : {"SOLID\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\n"
+                           "ENDFACET\nENDSOLID\n",
+                           "Solid\nFacet Normal 0 0 1\nOuter Loop\nVertex 0 0 0\nVertex 1 0 0\nVertex 0 1 0\nEndLoop\n"
+                           "EndFacet\nEndSolid\n"}) {
+    EXPECT_EQ(parse_stl(text, "m").triangle_count(), 1);
+  }
 }
 
 TEST(StlReader, RefusesEveryDefectOfTheFileWithItsPlace) {
