@@ -2,6 +2,7 @@
 #include <skinbem/hmatrix/nested_basis.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -52,7 +53,7 @@ class BasisMaker {
   }
 
   ClusterBasis column_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
-    if (cluster.is_leaf()) return dipoles_like_hats(cluster);
+    if (cluster.is_leaf()) return leaf_columns(cluster);
     const std::vector<Dof> candidates = skeletons(cluster, bases);
     const MatrixMap A = field_of(candidates);
     MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
@@ -74,18 +75,17 @@ class BasisMaker {
     return places;
   }
   static std::vector<Dof> vertex_dofs(const Cluster& leaf) { return all_components(places_of(leaf)); }
-  /// On all triangles around the leaf; from a tolerance of `coarse` on, which they meet, on two a vertex, as many as a
-  /// closed mesh has. The second is taken from the middle of what is left: at an edge the first ones may all be on one
-  /// face.
-  std::vector<Dof> dipole_dofs(const Cluster& leaf) const {
-    constexpr double coarse = 1e-5;
+  enum class Around { two_triangles, all_triangles };
+  /// On triangles around the leaf's vertices. Two of each vertex are as many as a closed mesh has: the first, and one
+  /// from the middle of what is left, since at an edge the first two may be on one face.
+  std::vector<Dof> dipole_dofs(const Cluster& leaf, Around around) const {
     std::vector<std::int32_t> found, left;
     for (const std::int32_t place : places_of(leaf)) {
       left.clear();
       for (const std::int32_t t : triangles_[tree_.order()[place]]) {
         if (std::find(found.begin(), found.end(), t) == found.end()) left.push_back(t);
       }
-      if (tolerance_ >= coarse && left.size() > 2) left = {left.front(), left[left.size() / 2]};
+      if (around == Around::two_triangles && left.size() > 2) left = {left.front(), left[left.size() / 2]};
       found.insert(found.end(), left.begin(), left.end());
     }
     return all_components(found);
@@ -97,10 +97,24 @@ class BasisMaker {
     }
     return dofs;
   }
+  /// From dipoles on two triangles a vertex, or on all where these miss too much: a vertex apart from the others of its
+  /// leaf needs all of its own. Tight tolerances always need all.
+  ClusterBasis leaf_columns(const Cluster& leaf) const {
+    constexpr double tight = 1e-5, too_much = 2;
+    if (tolerance_ >= tight) {
+      FittedDipoles few = dipoles_like_hats(leaf, dipole_dofs(leaf, Around::two_triangles));
+      if (few.missed <= too_much * tolerance_) return std::move(few.basis);
+    }
+    return dipoles_like_hats(leaf, dipole_dofs(leaf, Around::all_triangles)).basis;
+  }
+
+  struct FittedDipoles {
+    ClusterBasis basis;
+    double missed;  ///< Frobenius norm, relative, of what they miss of the hat functions' field at the samples
+  };
   /// There are many more dipoles around a leaf than it takes: they are chosen by fewer equations, and only what those
   /// chosen weigh is found from all of them.
-  ClusterBasis dipoles_like_hats(const Cluster& leaf) const {
-    std::vector<Dof> dipoles = dipole_dofs(leaf);
+  FittedDipoles dipoles_like_hats(const Cluster& leaf, const std::vector<Dof>& dipoles) const {
     const MatrixMap A = field_of(dipoles);
     const MatrixMap fewer = random_sums(A);
     MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
@@ -113,13 +127,19 @@ class BasisMaker {
       kept.col(Index(k)) = A.col(chosen[k]);
       candidates.push_back(dipoles[chosen[k]]);
     }
-    const Index hats = leaf.size() * components;
-    MatrixMap products = scratch(Use::gram, kept.cols() + hats, kept.cols());
+    const MatrixMap hats = field_of_hats(leaf);
+    MatrixMap products = scratch(Use::gram, kept.cols() + hats.cols(), kept.cols());
     lapack::gram_matrix(kept, products.topRows(kept.cols()));
-    lapack::transposed_product(field_of_hats(leaf), kept, products.bottomRows(hats));
+    const auto of_hats = products.bottomRows(hats.cols());
+    lapack::transposed_product(hats, kept, of_hats);
     ColumnSelection all = select_columns(products, 0);
-    all.weights = fill_up(leaf, all.weights.bottomRows(hats));
-    return basis(candidates, std::move(all));
+    const Eigen::MatrixXd weights = all.weights.bottomRows(hats.cols());
+    double fitted = 0;  // least squares: |hats|^2 - |what is missed|^2
+    for (std::size_t k = 0; k < all.columns.size(); ++k)
+      fitted += weights.col(Index(k)).dot(of_hats.col(all.columns[k]));
+    const double whole = hats.squaredNorm();
+    all.weights = fill_up(leaf, weights);
+    return {basis(candidates, std::move(all)), std::sqrt(std::max(0.0, whole - fitted) / whole)};
   }
 
   static ClusterBasis basis(const std::vector<Dof>& candidates, ColumnSelection selection) {

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interpolative decomposition.
+// Interpolative decomposition, and the bases made by it.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
 #include <set>
 #include <skinbem/hmatrix/nested_basis.hpp>
 #include <skinbem/hmatrix/tile_product.hpp>
+#include <skinbem/mesh/mesh_io.hpp>
 
+#include "files.hpp"
+#include "meshes.hpp"
 #include "tolerances.hpp"
 
 namespace skinbem {
 namespace {
+
+using namespace testing_support;
 
 Eigen::MatrixXd orthonormal(Index rows, Index columns) {
   const Eigen::MatrixXd random = Eigen::MatrixXd::Random(rows, columns);
@@ -92,6 +97,99 @@ TEST(ColumnSelection, OfNothingKeepsNothing) {
   EXPECT_TRUE(select_columns(Eigen::MatrixXd::Zero(20, 20), 1e-3).columns.empty());
   EXPECT_TRUE(select_columns(Eigen::MatrixXd(5, 0), 1e-3).columns.empty());
 }
+
+/// The fields at the samples of a leaf's hat functions and of the dipoles that stand for them, weighted: what these
+/// miss, relative to the former.
+class LeafColumns {
+ public:
+  LeafColumns(const TriangleMesh& mesh, const BasisOptions& options)
+      : tree_(mesh),
+        partition_(tree_, 1),
+        collocation_(mesh, {0.45, 1.0}, {1e-6}),
+        kernel_(mesh, tree_, collocation_.kernel()),
+        samples_(sample_far_fields(mesh, tree_, partition_, options.samples)),
+        bases_(make_nested_bases(mesh, tree_, partition_, collocation_, kernel_, options, [](double) {})) {}
+
+  const std::vector<std::int32_t>& leaves() const { return tree_.leaves(); }
+  double missed(std::int32_t leaf) const {
+    if (samples_[leaf].places.empty()) return 0;
+    const Eigen::MatrixXd hats = of_hats(leaf);
+    return (hats - of_dipoles(leaf) * bases_.columns[leaf].interpolation.transpose()).norm() / hats.norm();
+  }
+
+ private:
+  static constexpr int components = 3;
+  Index equation(std::size_t sample, int i) const { return tree_row(std::int32_t(sample), i, components); }
+
+  Eigen::MatrixXd of_hats(std::int32_t leaf) const {
+    const FarSamples& samples = samples_[leaf];
+    const Cluster& cluster = tree_.clusters()[leaf];
+    std::vector<std::int32_t> rows;
+    for (const std::int32_t place : samples.places) rows.push_back(tree_.order()[place]);
+    const auto columns = std::span(tree_.order()).subspan(cluster.begin, cluster.size());
+    Eigen::MatrixXd field =
+        Eigen::MatrixXd::Zero(components * Index(rows.size()), bases_.columns[leaf].interpolation.rows());
+    collocation_.for_double_layer_panels(rows, columns, [&](std::size_t first, std::size_t, const double* values) {
+      for (std::size_t p = 0; p < kPanel; ++p) {
+        for (std::int32_t v = 0; v < cluster.size(); ++v) {
+          for (int i = 0; i < components; ++i) {
+            for (int j = 0; j < components; ++j) {
+              field(equation(first + p, i), tree_row(v, j, components)) =
+                  samples.area_root[first + p] * values[(v * 9 + 3 * i + j) * kPanel + p];
+            }
+          }
+        }
+      }
+    });
+    return field;
+  }
+  Eigen::MatrixXd of_dipoles(std::int32_t leaf) const {
+    const FarSamples& samples = samples_[leaf];
+    const std::vector<Dof>& skeleton = bases_.columns[leaf].skeleton;
+    Eigen::MatrixXd field(components * Index(samples.places.size()), Index(skeleton.size()));
+    for (std::size_t k = 0; k < skeleton.size(); ++k) {
+      const double* values = kernel_.values(samples.places, std::span(&skeleton[k].point, 1));
+      for (std::size_t q = 0; q < samples.places.size(); ++q) {
+        for (int i = 0; i < components; ++i) {
+          field(equation(q, i), Index(k)) =
+              samples.area_root[q] * values[(q / kPanel * 9 + 3 * i + skeleton[k].component) * kPanel + q % kPanel];
+        }
+      }
+    }
+    return field;
+  }
+
+  ClusterTree tree_;
+  BlockPartition partition_;
+  Collocation<Kelvin<double>> collocation_;
+  PointKernel<Kelvin<double>> kernel_;
+  std::vector<FarSamples> samples_;
+  NestedBases bases_;
+};
+
+struct Body {
+  const char* name;
+  TriangleMesh (*make)();
+};
+class NestedBasesOf : public ::testing::TestWithParam<Body> {};
+
+TEST_P(NestedBasesOf, DipolesActAsTheHatFunctionsOfEveryLeafDo) {
+  for (const double tolerance : {1e-3, 3e-5}) {
+    const LeafColumns columns(GetParam().make(), {tolerance});
+    for (const std::int32_t leaf : columns.leaves()) EXPECT_LE(columns.missed(leaf), 4 * tolerance) << tolerance;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, NestedBasesOf,
+    ::testing::Values(Body{"cube", [] { return cube(12); }}, Body{"slab", [] { return thin_slab(20); }},
+                      Body{"needle", [] { return needle_box(150); }},
+                      Body{"leaf",
+                           [] {
+                             return ellipsoid(4, {1, 0.3, 0.03});
+                           }},  // some vertices are far from others
+                      Body{"leg", [] { return read_mesh(project_file("data/lower_limb/skin.obj")); }}),
+    [](const auto& body) { return body.param.name; });
 
 }  // namespace
 }  // namespace skinbem
