@@ -119,8 +119,11 @@ class CompressedMatrix {
   CompressionSummary summary_;
 };
 
+/// Mean rank of the bases at a tolerance of theirs, as measured on the leg of 10,000 vertices.
+double predict_rank(double tolerance);
+
 /// Bytes that a CompressedMatrix of numbers of `number_bytes` each will take: near blocks are counted, the rest follows
-/// from measured ranks.
+/// from that rank.
 std::size_t predict_compressed_bytes(const TriangleMesh& mesh, const CompressionOptions& options,
                                      std::size_t number_bytes);
 
