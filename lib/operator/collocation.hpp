@@ -18,8 +18,11 @@
 
 namespace skinbem {
 namespace detail {
+struct RowPanel;
 class GaussPoints;
-}
+template <class Kernel, class Real>
+class ColumnBlock;
+}  // namespace detail
 
 /// A scalar density on the surface, sum_i value_i N_i.
 struct VertexWeight {
@@ -72,10 +75,9 @@ class Collocation {
   Eigen::MatrixXd single_layer_columns(std::span<const VertexWeight> density) const;
 
  private:
-  struct Panel;
+  using Panel = detail::RowPanel;
   template <class Real>
-  struct ColumnBlock;
-  struct Reach;
+  using ColumnBlock = detail::ColumnBlock<Kernel, Real>;
 
   Index panel_count() const;
   /// Calls body(k, panel, column block of the thread) for every panel of rows, on all threads.
@@ -84,17 +86,14 @@ class Collocation {
   std::vector<std::int32_t> triangles_around(std::span<const std::int32_t> columns,
                                              std::span<const std::int32_t> slot_of) const;
   template <class Real>
-  static Reach reach(const Panel& panel, const SourceTriangle& triangle, const RuleLadder& ladder);
-  template <class Real>
   void fill(RowMajorMatrix& H, const Progress& progress, std::span<AssemblyCounts> counts) const;
   template <class Real, class Store>
   void make_panels(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns, const Store& store) const;
+  /// Returns how many points of the panel are near.
   template <class Real>
-  void add_triangle(const Panel& panel, Index t, detail::GaussPoints& gauss, ColumnBlock<Real>& block) const;
+  unsigned add_triangle(const Panel& panel, Index t, detail::GaussPoints& gauss, ColumnBlock<Real>& block) const;
   template <class Real>
   void store_rows(const Panel& panel, ColumnBlock<Real>& block, RowMajorMatrix& H) const;
-  void add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value, detail::GaussPoints& gauss,
-                           ColumnBlock<double>& block) const;
 
   std::vector<Eigen::Vector3d> vertices_;  ///< times scale_
   std::vector<std::array<std::int32_t, 3>> triangles_;

@@ -7,169 +7,20 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <bit>
-#include <cmath>
 #include <exception>
-#include <limits>
 #include <numeric>
+#include <string>
 
-#include <skinbem/kernels/kelvin_batch.hpp>
-#include <skinbem/kernels/panel_reach.hpp>
 #include <skinbem/operator/collocation.hpp>
+#include <skinbem/operator/column_block.hpp>
+#include <skinbem/operator/gauss_points.hpp>
+#include <skinbem/operator/morton_order.hpp>
+#include <skinbem/operator/panel_integral.hpp>
+#include <skinbem/operator/row_panel.hpp>
 
 namespace skinbem {
-namespace detail {
-
-/// A panel's columns: for each vertex components^2 entries of kPanel points, aligned for the batches.
-template <class Real>
-struct AlignedBuffer {
-  std::vector<Real> storage;
-  Real* data = nullptr;
-
-  void zero(std::size_t size) {
-    storage.assign(size + 64 / sizeof(Real), Real(0));
-    const auto address = reinterpret_cast<std::uintptr_t>(storage.data());
-    data = storage.data() + (64 - address % 64) % 64 / sizeof(Real);
-  }
-};
-
-/// Gauss points of one triangle for one rule, in the layout of the batches.
-class GaussPoints {
- public:
-  /// `density` scales the three hat functions. The points stay until the next call, and with the same triangle and rule
-  /// beyond it: then the density must be the same, too.
-  SourcePoints of(const TriangleGeometry<double>& g, const TriangleRule& rule, const Eigen::Vector3d& density) {
-    if (triangle_ != &g || rule_ != &rule) make(g, rule, density);
-    const std::size_t n = static_cast<std::size_t>(rule.size());
-    const double* p = storage_.data();
-    return {n, p, p + n, p + 2 * n, {p + 3 * n, p + 4 * n, p + 5 * n}};
-  }
-
- private:
-  void make(const TriangleGeometry<double>& g, const TriangleRule& rule, const Eigen::Vector3d& density) {
-    const std::size_t n = static_cast<std::size_t>(rule.size());
-    storage_.resize(6 * n);
-    const double* b = rule.barycentric.data();
-    const Eigen::Vector3d scale = density * (g.twice_area / 2);
-    for (int k = 0; k < 3; ++k) {
-      const double corner[3] = {g.vertices[0][k], g.vertices[1][k], g.vertices[2][k]};
-      double* const place = storage_.data() + std::size_t(k) * n;
-      double* const weight = place + 3 * n;
-      for (std::size_t q = 0; q < n; ++q) {
-        place[q] = b[3 * q] * corner[0] + b[3 * q + 1] * corner[1] + b[3 * q + 2] * corner[2];
-        weight[q] = b[3 * q + std::size_t(k)] * rule.weights.data()[q] * scale[k];
-      }
-    }
-    triangle_ = &g;
-    rule_ = &rule;
-  }
-
-  const TriangleGeometry<double>* triangle_ = nullptr;
-  const TriangleRule* rule_ = nullptr;
-  std::vector<double> storage_;
-};
-
-/// Spreads the low 21 bits of v to every third bit.
-inline std::uint64_t spread_bits(std::uint64_t v) {
-  v = (v | v << 32) & 0x1f00000000ffffull;
-  v = (v | v << 16) & 0x1f0000ff0000ffull;
-  v = (v | v << 8) & 0x100f00f00f00f00full;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ull;
-  return (v | v << 2) & 0x1249249249249249ull;
-}
-
-/// Indices of the points along Morton's curve: neighbours in it are neighbours in space, so a panel's points are close.
-inline std::vector<std::int32_t> morton_order(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d low = points.front(), high = points.front();
-  for (const auto& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double cells = 2097151 / std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
-  std::vector<std::uint64_t> code(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d cell = (points[i] - low) * cells;
-    code[i] = spread_bits(static_cast<std::uint64_t>(cell[0])) | spread_bits(static_cast<std::uint64_t>(cell[1])) << 1 |
-              spread_bits(static_cast<std::uint64_t>(cell[2])) << 2;
-  }
-  std::vector<std::int32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return code[a] < code[b]; });
-  return order;
-}
-
-template <class Block, class Real>
-void add_block(const Block& block, Real* out) {
-  for (Eigen::Index e = 0; e < Block::SizeAtCompileTime; ++e) {
-    out[e * Eigen::Index(kPanel)] +=
-        static_cast<Real>(block(e / Block::ColsAtCompileTime, e % Block::ColsAtCompileTime));
-  }
-}
-
-}  // namespace detail
-
-/// Up to kPanel field points.
-template <class Kernel>
-struct Collocation<Kernel>::Panel {
-  PointPanel points;
-  std::int32_t vertex[kPanel];
-  std::size_t count;
-
-  Panel(const std::vector<Eigen::Vector3d>& vertices, std::span<const std::int32_t> rows) : count(rows.size()) {
-    for (std::size_t p = 0; p < kPanel; ++p) {
-      vertex[p] = rows[std::min(p, count - 1)];
-      points.x[p] = vertices[vertex[p]][0];
-      points.y[p] = vertices[vertex[p]][1];
-      points.z[p] = vertices[vertex[p]][2];
-    }
-  }
-  PanelMask mask() const { return (1u << count) - 1u; }
-};
-
-/// The entries of one panel of rows in the columns asked for.
-template <class Kernel>
-template <class Real>
-struct Collocation<Kernel>::ColumnBlock {
-  static constexpr std::size_t entries = components * components;
-  AssemblyCounts counts;
-
-  /// `slot_of` is by vertex, -1 for those that are not asked for.
-  void prepare(std::span<const std::int32_t> slot_of, std::size_t slots) {
-    slot_of_ = slot_of;
-    slots_ = slots;
-    counts = {};
-    values_.zero((slots + 1) * entries * kPanel);  // one more slot takes what is not asked for
-  }
-  Real* slot(std::size_t k) { return values_.data + k * entries * kPanel; }
-  Real* at(std::int32_t vertex) {
-    const std::int32_t k = slot_of_[vertex];
-    return slot(k < 0 ? slots_ : static_cast<std::size_t>(k));
-  }
-  typename Kernel::Block entry(std::size_t k, std::size_t p) {
-    typename Kernel::Block block;
-    for (int e = 0; e < int(entries); ++e) block(e / components, e % components) = slot(k)[e * kPanel + p];
-    return block;
-  }
-
- private:
-  std::span<const std::int32_t> slot_of_;
-  std::size_t slots_ = 0;
-  detail::AlignedBuffer<Real> values_;  ///< [slot][entry][point]
-};
-
-/// Which points of a panel are near a triangle, and the Gauss rule that serves the others: one for each half where a
-/// vector holds half a panel.
-template <class Kernel>
-struct Collocation<Kernel>::Reach {
-  struct Far {
-    PanelMask mask;
-    const TriangleRule* rule;
-  };
-  PanelMask near;
-  Far far[2];
-};
-
 template <class Kernel>
 Index Collocation<Kernel>::panel_count() const {
   return (node_count() + Index(kPanel) - 1) / Index(kPanel);
@@ -242,70 +93,11 @@ std::vector<std::int32_t> Collocation<Kernel>::triangles_around(std::span<const 
 
 template <class Kernel>
 template <class Real>
-typename Collocation<Kernel>::Reach Collocation<Kernel>::reach(const Panel& panel, const SourceTriangle& triangle,
-                                                               const RuleLadder& ladder) {
-  constexpr PanelMask first_half = (1u << kPanel / 2) - 1u;
-  const PanelReach found = panel_reach(panel.points, triangle.centroid, ladder.near_ratio2() * triangle.radius2);
-  const PanelMask far = ~found.near & panel.mask();
-  const auto rule = [&](double closest2) {  // rounding must not bring it below the last rung
-    return ladder.rule(std::max(closest2 / triangle.radius2, ladder.near_ratio2()));
-  };
-  const auto [first, second] = found.closest2;
-  Reach split{found.near & panel.mask(), {{far, rule(std::min(first, second))}, {0, nullptr}}};
-  if constexpr (std::is_same_v<Real, double>) {
-    const TriangleRule *of_first = rule(first), *of_second = rule(second);
-    if (of_first != of_second) {
-      split.far[0] = {far & first_half, of_first};
-      split.far[1] = {far & ~first_half, of_second};
-    }
-  }
-  return split;
-}
-
-template <class Kernel>
-template <class Real>
-void Collocation<Kernel>::add_triangle(const Panel& panel, Index t, detail::GaussPoints& gauss,
-                                       ColumnBlock<Real>& block) const {
-  const SourceTriangle& triangle = sources_[t];
+unsigned Collocation<Kernel>::add_triangle(const Panel& panel, Index t, detail::GaussPoints& gauss,
+                                           ColumnBlock<Real>& block) const {
   const auto& v = triangles_[t];
-  Real* const out[3] = {block.at(v[0]), block.at(v[1]), block.at(v[2])};
-  const Reach split = reach<Real>(panel, triangle, integral_.double_layer_rules());
-  block.counts.pairs += panel.count;
-  block.counts.near += static_cast<unsigned>(std::popcount(split.near));
-
-  for (const auto& [mask, rule] : split.far) {
-    if (mask == 0) continue;
-    const SourcePoints points = gauss.of(triangle.geometry, *rule, {1, 1, 1});
-    add_double_layer(integral_.kernel(), panel.points, mask, points, triangle.geometry.normal, out);
-  }
-  for (PanelMask near = split.near; near != 0; near &= near - 1) {
-    const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
-    const auto blocks = integral_.double_layer(triangle, panel.points.point(p));
-    for (int c = 0; c < 3; ++c) {
-      if (v[c] != panel.vertex[p])
-        detail::add_block(blocks[c], out[c] + p);  // the diagonal comes from rigid translation
-    }
-  }
-}
-
-template <class Kernel>
-void Collocation<Kernel>::add_single_layer_of(const Panel& panel, Index t, const std::vector<double>& value,
-                                              detail::GaussPoints& gauss, ColumnBlock<double>& block) const {
-  const SourceTriangle& triangle = sources_[t];
-  const auto& v = triangles_[t];
-  const Eigen::Vector3d density(value[v[0]], value[v[1]], value[v[2]]);
-  const Reach split = reach<double>(panel, triangle, integral_.single_layer_rules());
-  for (const auto& [mask, rule] : split.far) {
-    if (mask == 0) continue;
-    const SourcePoints points = gauss.of(triangle.geometry, *rule, density);
-    add_single_layer(integral_.kernel(), panel.points, mask, points, block.slot(0));
-  }
-  for (PanelMask near = split.near; near != 0; near &= near - 1) {
-    const std::size_t p = static_cast<std::size_t>(std::countr_zero(near));
-    const auto blocks = integral_.single_layer(triangle, panel.points.point(p));
-    const typename Kernel::Block sum = blocks[0] * density[0] + blocks[1] * density[1] + blocks[2] * density[2];
-    detail::add_block(sum, block.slot(0) + p);
-  }
+  Real* const out[3] = {block.slot_at(v[0]), block.slot_at(v[1]), block.slot_at(v[2])};
+  return detail::add_double_layer_of(sources_[t], v, panel, integral_, gauss, out);
 }
 
 /// The rows of a panel, all columns, and their diagonal blocks by rigid translation. Some columns at a time, so that
@@ -341,8 +133,8 @@ void Collocation<Kernel>::fill(RowMajorMatrix& H, const Progress& progress, std:
   for_each_panel<Real>(progress, "assemble", [&](Index k, const Panel& panel, ColumnBlock<Real>& block) {
     block.prepare(slots, slots.size());
     detail::GaussPoints gauss;
-    for (Index t = 0; t < Index(triangles_.size()); ++t) add_triangle(panel, t, gauss, block);
-    counts[k] = block.counts;
+    counts[k].pairs = panel.count * triangles_.size();
+    for (Index t = 0; t < Index(triangles_.size()); ++t) counts[k].near += add_triangle(panel, t, gauss, block);
     store_rows(panel, block, H);
   });
 }
@@ -399,11 +191,11 @@ void Collocation<Kernel>::for_double_layer_panels(
     return;
   }
   const std::size_t size = columns.size() * ColumnBlock<float>::entries * kPanel;
-  thread_local detail::AlignedBuffer<double> wide;
-  wide.zero(size);
+  thread_local detail::AlignedVector<double> wide;
+  wide.resize(size);
   make_panels<float>(rows, columns, [&](std::size_t first, std::size_t count, const float* entries) {
-    std::copy_n(entries, size, wide.data);
-    store(first, count, wide.data);
+    std::copy_n(entries, size, wide.data());
+    store(first, count, wide.data());
   });
 }
 
@@ -446,7 +238,11 @@ Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const Vertex
   for_each_panel<double>({}, "", [&](Index, const Panel& panel, ColumnBlock<double>& block) {
     block.prepare({}, 0);
     detail::GaussPoints gauss;
-    for (const std::int32_t t : triangles) add_single_layer_of(panel, t, value, gauss, block);
+    for (const std::int32_t t : triangles) {
+      const auto& v = triangles_[t];
+      detail::add_single_layer_of(sources_[t], {value[v[0]], value[v[1]], value[v[2]]}, panel, integral_, gauss,
+                                  block.slot(0));
+    }
     for (std::size_t p = 0; p < panel.count; ++p) {
       G.template block<components, components>(components * Index(panel.vertex[p]), 0) = block.entry(0, p) / scale_;
     }
