@@ -40,12 +40,13 @@ std::vector<std::int32_t> draw_by_weight(std::vector<double> weights, std::size_
 
 CompressionDefects::CompressionDefects(const Collocation<Kelvin<double>>& collocation, const Eigen::MatrixXd& B,
                                        Eigen::MatrixXd answers)
-    : B_(B),
-      answers_(std::move(answers)),
-      rows_(collocation, draw_by_weight(how_loose(B, answers_), sampled_vertices)) {}
+    : answers_(std::move(answers)),
+      rows_(collocation, draw_by_weight(how_loose(B, answers_), sampled_vertices)),
+      B_rows_(rows_.pick(B)) {}
 
-Eigen::MatrixXd CompressionDefects::of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& G) const {
-  Eigen::MatrixXd left = rows_.multiply(Y) + rows_.pick(B_) * (B_.transpose() * Y) - rows_.pick(G);
+Eigen::MatrixXd CompressionDefects::of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& L,
+                                       const Eigen::MatrixXd& G) const {
+  Eigen::MatrixXd left = rows_.multiply(Y) + B_rows_ * L - rows_.pick(G);
   for (std::size_t k = 0; k < rows_.vertices().size(); ++k) {
     auto own = left.middleRows<3>(3 * Index(k));
     own = (rows_.own_block(k).inverse() * own).eval();

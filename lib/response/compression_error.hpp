@@ -25,17 +25,17 @@ class CompressionDefects {
   /// Those of the same body compressed anew. The vertices stay: defects before and after are comparable.
   void set_answers(Eigen::MatrixXd answers) { answers_ = std::move(answers); }
   /// What is left of the vertices' equations, each solved for the vertex's own displacement: 3 #vertices by #columns,
-  /// in the unit of Y.
-  Eigen::MatrixXd of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& G) const;
+  /// in the unit of Y. L = B^T Y.
+  Eigen::MatrixXd of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& L, const Eigen::MatrixXd& G) const;
 
   /// The largest root mean square of a column of such defects. A vertex counts at most as three times their median: one
   /// in a steep place, beside a landmark, is no measure of the others.
   static double size(const Eigen::MatrixXd& defects);
 
  private:
-  Eigen::MatrixXd B_;
   Eigen::MatrixXd answers_;
   ExactRows rows_;
+  Eigen::MatrixXd B_rows_;  ///< those rows of B
 };
 
 }  // namespace skinbem

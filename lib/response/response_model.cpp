@@ -152,7 +152,7 @@ struct ResponseModel::State {
     const Eigen::MatrixXd Y = solve_with_defects(G, ended);
     const Eigen::MatrixXd L = B.transpose() * Y;
     const Eigen::MatrixXd X = Y - B * L;
-    const Eigen::MatrixXd left = defects ? defects->of(Y, G) : Eigen::MatrixXd(0, G.cols());
+    const Eigen::MatrixXd left = defects ? defects->of(Y, L, G) : Eigen::MatrixXd(0, G.cols());
     for (std::size_t k = 0; k < made.size(); ++k) {
       made[k].X = X.middleCols<3>(3 * Index(k));
       made[k].L = L.middleCols<3>(3 * Index(k));
