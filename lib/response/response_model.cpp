@@ -5,7 +5,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <sstream>
 
@@ -20,6 +19,26 @@ namespace skinbem {
 namespace {
 
 Eigen::Map<const Points> as_points(const Eigen::Ref<const Eigen::VectorXd>& u) { return {u.data(), u.size() / 3, 3}; }
+
+/// The part of the error of R that quadrature makes: the tolerance that every element integral keeps (a priori), or
+/// what a rotation shows of it (a posteriori): measured over spheres, legs, boxes and slabs, R errs by 100 to 12,000
+/// times |H (w x X)| / |w x X|.
+constexpr double rotation_residual_to_error = 50000;
+/// Ratio of the second to the first extent of landmarks: the error of a rotation about their line is its inverse.
+constexpr double on_a_line = 1e-6;
+/// Reciprocal condition of the landmarks' system: measured, 1e-4 to 1e-2 on the leg and on boxes, 4e-7 where a patch
+/// is half of the leg, 1e-6 for three neighbouring vertices; below 1e-11 R errs by more than its tolerance.
+constexpr double told_apart = 1e-11;
+/// On the product of the size of the defects and what such defects do: measured, 0.9 to 2.5 times the error.
+constexpr double safety = 1.5;
+/// R errs at least seven times less than the tolerance of H (docs/accuracy.md).
+constexpr double compressed_quadrature = 1.0 / 7;
+
+void require_own_vertex(const Landmark& landmark, const Landmark& other) {
+  if (landmark.vertex != other.vertex) return;
+  throw Error(ErrorCode::bad_input, "landmarks " + other.name + " and " + landmark.name + " are both on vertex " +
+                                        std::to_string(landmark.vertex) + "; move or remove one of them");
+}
 
 }  // namespace
 
@@ -51,7 +70,7 @@ struct ResponseModel::State {
   State(const TriangleMesh& body, const ResponseOptions& given)
       : mesh(body),
         options(given),
-        collocation(mesh, Kelvin<double>{given.poisson, 1.0}, quadrature_for(given.tolerance)),
+        collocation(mesh, Kelvin<double>{given.poisson, 1.0}, {given.tolerance}),
         neighbours(neighbours_of_vertices(mesh)),
         areas(vertex_areas(mesh)),
         B(rigid_modes(mesh.vertices)),
@@ -98,28 +117,9 @@ struct ResponseModel::State {
     return true;
   }
 
-  /// The part of the error of R that quadrature makes: the tolerance that every element integral keeps (a priori), or
-  /// what a rotation shows of it (a posteriori): measured over spheres, legs, boxes and slabs, R errs by 100 to 12,000
-  /// times |H (w x X)| / |w x X|.
-  static constexpr double rotation_residual_to_error = 50000;
-  static QuadratureOptions quadrature_for(double tolerance) { return {tolerance}; }
-  /// Ratio of the second to the first extent of landmarks: the error of a rotation about their line is its inverse.
-  static constexpr double on_a_line = 1e-6;
-  /// Reciprocal condition of the landmarks' system: measured, 1e-4 to 1e-2 on the leg and on boxes, 4e-7 where a patch
-  /// is half of the leg, 1e-6 for three neighbouring vertices; below 1e-11 R errs by more than its tolerance.
-  static constexpr double told_apart = 1e-11;
-  /// On the product of the size of the defects and what such defects do: measured, 0.9 to 2.5 times the error.
-  static constexpr double safety = 1.5;
-  /// R errs at least seven times less than the tolerance of H (docs/accuracy.md).
-  static constexpr double compressed_quadrature = 1.0 / 7;
-
   void check(const Landmark& landmark, Index replaced) const {
     for (Index k = 0; k < Index(greens.size()); ++k) {
-      if (k != replaced && greens[k].landmark.vertex == landmark.vertex) {
-        throw Error(ErrorCode::bad_input, "landmarks " + greens[k].landmark.name + " and " + landmark.name +
-                                              " are both on vertex " + std::to_string(landmark.vertex) +
-                                              "; move or remove one of them");
-      }
+      if (k != replaced) require_own_vertex(landmark, greens[k].landmark);
     }
   }
 
@@ -297,13 +297,7 @@ void ResponseModel::add(std::span<const Landmark> landmarks) {
   if (landmarks.empty()) return;
   for (std::size_t k = 0; k < landmarks.size(); ++k) {
     state_->check(landmarks[k], -1);
-    for (std::size_t other = 0; other < k; ++other) {
-      if (landmarks[other].vertex == landmarks[k].vertex) {
-        throw Error(ErrorCode::bad_input, "landmarks " + landmarks[other].name + " and " + landmarks[k].name +
-                                              " are both on vertex " + std::to_string(landmarks[k].vertex) +
-                                              "; move or remove one of them");
-      }
-    }
+    for (std::size_t other = 0; other < k; ++other) require_own_vertex(landmarks[k], landmarks[other]);
   }
   const std::size_t before = state_->greens.size();
   for (GreensFunctions& g : state_->solve(landmarks)) state_->greens.push_back(std::move(g));
