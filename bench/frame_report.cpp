@@ -140,58 +140,95 @@ void read_in_parallel(const float* data, std::size_t floats, int threads) {
   }
 }
 
-nlohmann::json measured(const Case& c, std::size_t frames, double budget) {
-  const Skin skin(c);
-  const FrameModel model(skin.rest, skin.response, skin.landmarks, options_of(c.kept));
-  const FrameModel single(skin.rest, skin.response, skin.landmarks);
-  const Points displacements = 10 * Points::Random(c.landmarks, 3);
-  FrameState state(model);
-  FrameState single_state(single);
-  if (!state.set_landmarks(displacements)) std::abort();
-  const BodyMotion motion = state.motion();
-  FrameThreads threads(c.threads);
-  omp_set_num_threads(c.threads);
-  std::vector<float> positions(static_cast<std::size_t>(3 * c.vertices));
-  const auto set = [&] {
-    // The setter of a compressed model does a part of the product, so it is counted; the rigid fit is not.
-    if (c.kept == Kept::compressed && !state.set_motion(motion)) std::abort();
-  };
-  const auto evaluate = [&] {
-    set();
-    if (!state.evaluate(VertexTarget{positions}, threads)) std::abort();
-  };
-  Points in_double;
-  const auto evaluate_in_double = [&] { in_double = evaluate_reference(skin.rest, skin.response, motion); };
-  Contender ours{c.kept == Kept::float64 ? std::function<void()>(evaluate_in_double) : evaluate};
-  Contender float32{[&] {
-    if (!single_state.evaluate(VertexTarget{positions}, threads)) std::abort();
+/// The library's frames of one skin: as the case asks for, and in other ways to compare with.
+class OurFrames {
+ public:
+  OurFrames(const Skin& skin, const Case& c)
+      : case_(c),
+        skin_(skin),
+        model_(skin.rest, skin.response, skin.landmarks, options_of(c.kept)),
+        single_(skin.rest, skin.response, skin.landmarks),
+        displacements_(10 * Points::Random(c.landmarks, 3)),
+        positions_(static_cast<std::size_t>(3 * c.vertices)) {
+    must(state_.set_landmarks(displacements_));
+    must(single_state_.set_landmarks(displacements_));
+    motion_ = state_.motion();
+  }
+  OurFrames(const OurFrames&) = delete;
+  OurFrames& operator=(const OurFrames&) = delete;
+
+  const FrameModel& model() const { return model_; }
+
+  Contender asked{[this] {
+    if (case_.kept == Kept::float64) {
+      in_double_ = evaluate_reference(skin_.rest, skin_.response, motion_);
+    } else {
+      set();
+      must(state_.evaluate(VertexTarget{positions_}, threads_));
+    }
   }};
-  Contender alone{[&] {
+  Contender float32{[this] { must(single_state_.evaluate(VertexTarget{positions_}, threads_)); }};
+  Contender one_thread{[this] {
     set();
-    if (!state.evaluate(VertexTarget{positions})) std::abort();
+    must(state_.evaluate(VertexTarget{positions_}));
   }};
-  Contender whole{[&] {
-    if (!state.set_landmarks(displacements)) std::abort();
-    if (!state.evaluate(VertexTarget{positions}, threads)) std::abort();
+  Contender with_rigid_fit{[this] {
+    must(state_.set_landmarks(displacements_));
+    must(state_.evaluate(VertexTarget{positions_}, threads_));
   }};
 
-  const Eigen::MatrixXf response = skin.response.cast<float>();
-  const Eigen::VectorXf rest = Eigen::Map<const Eigen::VectorXd>(skin.rest.data(), skin.rest.size()).cast<float>();
-  const Eigen::VectorXf q = Eigen::VectorXf::Random(response.cols());
-  Eigen::VectorXf out(rest.size());
-  Contender eigen{[&] {
+ private:
+  static void must(bool done) {
+    if (!done) std::abort();
+  }
+  /// The setter of a compressed model does a part of the product, so it is counted; the rigid fit is not.
+  void set() {
+    if (case_.kept == Kept::compressed) must(state_.set_motion(motion_));
+  }
+
+  Case case_;
+  const Skin& skin_;
+  FrameModel model_, single_;
+  Points displacements_;
+  FrameState state_{model_}, single_state_{single_};
+  BodyMotion motion_;
+  FrameThreads threads_{case_.threads};
+  std::vector<float> positions_;
+  Points in_double_;
+};
+
+/// The same product, without rotation, by the libraries for matrices.
+struct LibraryProducts {
+  explicit LibraryProducts(const Skin& skin)
+      : response(skin.response.cast<float>()),
+        rest(Eigen::Map<const Eigen::VectorXd>(skin.rest.data(), skin.rest.size()).cast<float>()) {}
+  LibraryProducts(const LibraryProducts&) = delete;
+  LibraryProducts& operator=(const LibraryProducts&) = delete;
+
+  Eigen::MatrixXf response;
+  Eigen::VectorXf rest;
+  Eigen::VectorXf q = Eigen::VectorXf::Random(response.cols());
+  Eigen::VectorXf out{rest.size()};
+  Contender eigen{[this] {
     out = rest;
     out.noalias() += response * q;
   }};
-  Contender openblas{[&] {
+  Contender openblas{[this] {
     out = rest;
     cblas_sgemv(CblasColMajor, CblasNoTrans, static_cast<int>(response.rows()), static_cast<int>(response.cols()), 1,
                 response.data(), static_cast<int>(response.rows()), q.data(), 1, 1, out.data(), 1);
   }};
+};
+
+nlohmann::json measured(const Case& c, std::size_t frames, double budget) {
+  const Skin skin(c);
+  OurFrames ours(skin, c);
+  omp_set_num_threads(c.threads);
+  LibraryProducts library(skin);
 
   // What a frame moves: the packed model, the output, and the lines of the output that a write fetches first.
   const double numbers = 9.0 * static_cast<double>(c.vertices * (c.landmarks + 1));
-  const double bytes = (c.kept == Kept::float64 ? 8 * numbers : static_cast<double>(model.bytes())) +
+  const double bytes = (c.kept == Kept::float64 ? 8 * numbers : static_cast<double>(ours.model().bytes())) +
                        24.0 * static_cast<double>(c.vertices);
   const auto shares = static_cast<std::size_t>(c.threads);
   const std::size_t floats = static_cast<std::size_t>(bytes / sizeof(float)) / shares / 256 * 256;
@@ -200,31 +237,33 @@ nlohmann::json measured(const Case& c, std::size_t frames, double budget) {
 
   // OpenMP's threads spin for some milliseconds after their work, on the core where ours would help: after those of one
   // library come those of one thread (Eigen's product has one), before those of the other.
-  measure({&ours, &float32, &whole, &read, &openblas, &eigen, &alone}, turn_of(c.threads), frames, budget);
+  measure(
+      {&ours.asked, &ours.float32, &ours.with_rigid_fit, &read, &library.openblas, &library.eigen, &ours.one_thread},
+      turn_of(c.threads), frames, budget);
   nlohmann::json row;
   row["vertices"] = c.vertices;
   row["landmarks"] = c.landmarks;
   row["storage"] = name_of(c.kept);
   row["threads"] = c.threads;
-  row["p50_us"] = ours.percentile(0.5);
-  row["p99_us"] = ours.percentile(0.99);
-  row["p999_us"] = ours.percentile(0.999);
-  row["max_us"] = ours.percentile(1);
-  row["with_rigid_fit_us"] = whole.percentile(0.5);
-  row["mean_us"] = ours.mean();
-  row["one_thread_mean_us"] = alone.mean();
-  row["float32_us"] = float32.percentile(0.5);
-  row["eigen_us"] = eigen.percentile(0.5);
-  row["openblas_us"] = openblas.percentile(0.5);
+  row["p50_us"] = ours.asked.percentile(0.5);
+  row["p99_us"] = ours.asked.percentile(0.99);
+  row["p999_us"] = ours.asked.percentile(0.999);
+  row["max_us"] = ours.asked.percentile(1);
+  row["with_rigid_fit_us"] = ours.with_rigid_fit.percentile(0.5);
+  row["mean_us"] = ours.asked.mean();
+  row["one_thread_mean_us"] = ours.one_thread.mean();
+  row["float32_us"] = ours.float32.percentile(0.5);
+  row["eigen_us"] = library.eigen.percentile(0.5);
+  row["openblas_us"] = library.openblas.percentile(0.5);
   row["read_us"] = read.percentile(0.5);
-  row["eigen_p99_us"] = eigen.percentile(0.99);
-  row["openblas_p99_us"] = openblas.percentile(0.99);
+  row["eigen_p99_us"] = library.eigen.percentile(0.99);
+  row["openblas_p99_us"] = library.openblas.percentile(0.99);
   row["read_p99_us"] = read.percentile(0.99);
-  row["bandwidth_fraction"] = read.percentile(0.5) / ours.percentile(0.5);
+  row["bandwidth_fraction"] = read.percentile(0.5) / ours.asked.percentile(0.5);
   row["bytes"] = bytes;
-  row["gigabytes_per_second"] = bytes * 1e-3 / ours.percentile(0.5);
-  row["error_bound"] = model.achieved_error_bound();
-  row["frames"] = ours.microseconds.size();
+  row["gigabytes_per_second"] = bytes * 1e-3 / ours.asked.percentile(0.5);
+  row["error_bound"] = ours.model().achieved_error_bound();
+  row["frames"] = ours.asked.microseconds.size();
   return row;
 }
 
