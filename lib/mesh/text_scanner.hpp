@@ -49,8 +49,6 @@ class TextScanner {
   const std::string& name() const { return name_; }
   /// Number of the current line, from 1; of the last one after the end.
   std::int64_t line() const { return line_; }
-  /// Bytes behind the current line: no count in a file may promise more than fits there.
-  std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - next_); }
 
  private:
   void skip_blanks();

@@ -36,7 +36,7 @@ struct BvhMotion {
 /// finite, a frame count that is not kept, a frame time that is not positive, two joints of one name.
 BvhMotion read_bvh(const std::filesystem::path& path);
 
-/// Where every joint is in frame `frame`: world = joint_pose[j](point in the axes of joint j); the translation is the
+/// Where every joint is in frame `frame`: world = result[j](point in the axes of joint j); the translation is the
 /// joint's position. Rotation channels multiply in the order of the file, position channels replace the joint's offset.
 std::vector<RigidMotion> joint_poses(const BvhMotion& motion, Index frame);
 
