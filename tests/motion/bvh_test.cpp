@@ -4,11 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include <skinbem/base/error.hpp>
-
-#include "files.hpp"
+#include "text_reader.hpp"
 #include "tolerances.hpp"
 
 namespace skinbem {
@@ -39,30 +35,10 @@ Frame Time: 0.04
 30 10 20 90 0 0 90 0 0
 )";
 
-class BvhFile : public ::testing::Test {
+class BvhFile : public testing_support::TextReader<read_bvh> {
  protected:
-  BvhMotion read(const std::string& text) {
-    std::ofstream(path_, std::ios::binary) << text;
-    return read_bvh(path_);
-  }
-  std::string error_of(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::bad_input);
-      return error.what();
-    }
-    return "no error";
-  }
-  /// `arm` with the first `from` replaced by `to`.
-  std::string error_with(const std::string& from, const std::string& to) {
-    std::string text = arm;
-    return error_of(text.replace(text.find(from), from.size(), to));
-  }
-
- private:
-  testing_support::TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_ / "motion.bvh";
+  BvhFile() : TextReader("motion.bvh") {}
+  std::string error_with(const std::string& from, const std::string& to) { return error_of(arm, from, to); }
 };
 
 TEST_F(BvhFile, JointsAreWhereTheAnglesPutThem) {

@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <functional>
 #include <limits>
 
-#include <skinbem/base/error.hpp>
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/motion/landmark_motion.hpp>
 
 #include "files.hpp"
+#include "refusal.hpp"
 #include "tolerances.hpp"
 
 namespace skinbem {
@@ -18,6 +17,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using testing_support::refusal;
 
 constexpr double not_seen = std::numeric_limits<double>::quiet_NaN();
 
@@ -58,15 +58,6 @@ struct Laboratory {
   }
 };
 
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(MotionByMarkers, AMarkerOnTheMeshGoesWhereItWasMeasured) {
   const Laboratory lab;
   const SkeletonMotion motion = move_by_markers(lab.rig, lab.file);
@@ -96,25 +87,25 @@ TEST(MotionByMarkers, ThreeSeenMarkersSufficeAndShortGapsAreBridged) {
 TEST(MotionByMarkers, LongGapsAndGapsAtTheEndsAreErrors) {
   Laboratory lab;
   lab.file.positions.block(3, 0, 12, 6).setConstant(not_seen);
-  EXPECT_THAT(error_of([&] { move_by_markers(lab.rig, lab.file); }), AllOf(HasSubstr("'shank'"), HasSubstr("0.06")));
+  EXPECT_THAT(refusal([&] { move_by_markers(lab.rig, lab.file); }), AllOf(HasSubstr("'shank'"), HasSubstr("0.06")));
   lab = Laboratory();
   lab.file.positions.bottomLeftCorner(1, 6).setConstant(not_seen);
-  EXPECT_THAT(error_of([&] { move_by_markers(lab.rig, lab.file); }), HasSubstr("0.38"));
+  EXPECT_THAT(refusal([&] { move_by_markers(lab.rig, lab.file); }), HasSubstr("0.38"));
   lab = Laboratory();
   lab.file.positions.topLeftCorner(1, 3).setConstant(not_seen);
-  EXPECT_THAT(error_of([&] { move_by_markers(lab.rig, lab.file); }), AllOf(HasSubstr("'A'"), HasSubstr("rest frame")));
+  EXPECT_THAT(refusal([&] { move_by_markers(lab.rig, lab.file); }), AllOf(HasSubstr("'A'"), HasSubstr("rest frame")));
 }
 
 TEST(MotionByMarkers, SaysWhatDoesNotFitTheFile) {
   Laboratory lab;
   lab.rig.segments[0].markers[2] = "E";
-  EXPECT_THAT(error_of([&] { move_by_markers(lab.rig, lab.file); }), AllOf(HasSubstr("'E'"), HasSubstr("A B C D")));
+  EXPECT_THAT(refusal([&] { move_by_markers(lab.rig, lab.file); }), AllOf(HasSubstr("'E'"), HasSubstr("A B C D")));
   lab = Laboratory();
   lab.rig.rest_time = 7;
-  EXPECT_THAT(error_of([&] { move_by_markers(lab.rig, lab.file); }), HasSubstr("rest_time"));
+  EXPECT_THAT(refusal([&] { move_by_markers(lab.rig, lab.file); }), HasSubstr("rest_time"));
   lab = Laboratory();
   std::swap(lab.rig.placement[0].mesh, lab.rig.placement[2].mesh);
-  EXPECT_THAT(error_of([&] { move_by_markers(lab.rig, lab.file); }), HasSubstr("[placement]"));
+  EXPECT_THAT(refusal([&] { move_by_markers(lab.rig, lab.file); }), HasSubstr("[placement]"));
 }
 
 TEST(MotionByMarkers, AMarkerOnTheSkinMovesItsLandmarkItself) {

@@ -5,11 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <fstream>
 
-#include <skinbem/base/error.hpp>
-
-#include "files.hpp"
+#include "text_reader.hpp"
 #include "tolerances.hpp"
 
 namespace skinbem {
@@ -50,30 +47,10 @@ distal_joint = "Foot"
 motion_axis = [1, 0, 0]
 )";
 
-class RigFileText : public ::testing::Test {
+class RigFileText : public testing_support::TextReader<read_rig> {
  protected:
-  Rig read(const std::string& text) {
-    std::ofstream(path_, std::ios::binary) << text;
-    return read_rig(path_);
-  }
-  std::string error_of(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::bad_input);
-      return error.what();
-    }
-    return "no error";
-  }
-  /// `leg` with the first `from` replaced by `to`.
-  std::string error_with(const std::string& from, const std::string& to) {
-    std::string text = leg;
-    return error_of(text.replace(text.find(from), from.size(), to));
-  }
-
- private:
-  testing_support::TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_ / "leg.toml";
+  RigFileText() : TextReader("leg.toml") {}
+  std::string error_with(const std::string& from, const std::string& to) { return error_of(leg, from, to); }
 };
 
 TEST_F(RigFileText, ParentsComeBeforeTheirChildren) {

@@ -4,11 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include <skinbem/base/error.hpp>
-
-#include "files.hpp"
+#include "text_reader.hpp"
 #include "tolerances.hpp"
 
 namespace skinbem {
@@ -28,27 +24,10 @@ const std::string walk =
     "8\t0.12\t1\t2\t3\t\t\t\n"
     "9\t0.14\tNaN\tNaN\tNaN\t7\t8\t9\n";
 
-class TrcFile : public ::testing::Test {
+class TrcFile : public testing_support::TextReader<read_trc> {
  protected:
-  TrcMotion read(const std::string& text) {
-    std::ofstream(path_, std::ios::binary) << text;
-    return read_trc(path_);
-  }
-  /// What is said about `walk` with the first `from` replaced by `to`.
-  std::string error_with(const std::string& from, const std::string& to) {
-    std::string text = walk;
-    try {
-      read(text.replace(text.find(from), from.size(), to));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::bad_input);
-      return error.what();
-    }
-    return "no error";
-  }
-
- private:
-  testing_support::TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_ / "walk.trc";
+  TrcFile() : TextReader("walk.trc") {}
+  std::string error_with(const std::string& from, const std::string& to) { return error_of(walk, from, to); }
 };
 
 TEST_F(TrcFile, GivesMillimetresAndKnowsWhatWasNotSeen) {

@@ -4,11 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include <skinbem/base/error.hpp>
-
-#include "files.hpp"
+#include "text_reader.hpp"
 
 namespace skinbem {
 namespace {
@@ -26,25 +22,13 @@ TriangleMesh tetrahedron() {
   return mesh;
 }
 
-class LandmarkTableFile : public ::testing::Test {
- protected:
-  LandmarkTable read(const std::string& text) {
-    std::ofstream(path_, std::ios::binary) << text;
-    return read_landmarks(path_, tetrahedron(), 1.5);
-  }
-  std::string error_of(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::bad_input);
-      return error.what();
-    }
-    return "no error";
-  }
+LandmarkTable read_on_tetrahedron(const std::filesystem::path& path) {
+  return read_landmarks(path, tetrahedron(), 1.5);
+}
 
- private:
-  testing_support::TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_ / "landmarks.csv";
+class LandmarkTableFile : public testing_support::TextReader<read_on_tetrahedron> {
+ protected:
+  LandmarkTableFile() : TextReader("landmarks.csv") {}
 };
 
 TEST_F(LandmarkTableFile, ReadsVerticesAndTheOptionalColumns) {
