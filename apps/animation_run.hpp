@@ -3,7 +3,6 @@
 /// From the response and a motion to an animation: what `animate` and `demo` share.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <memory>
-
 #include <skinbem/base/error.hpp>
 #include <skinbem/mesh/mesh_io.hpp>
 #include <skinbem/mesh/validate.hpp>

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 
 #include <skinbem/base/atomic_file.hpp>
 #include <skinbem/base/error.hpp>

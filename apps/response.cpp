@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <memory>
-
 #include <skinbem/io/npy.hpp>
 
 #include "commands.hpp"

@@ -2,7 +2,6 @@
 #include "quadrature_cases.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <skinbem/base/text.hpp>
 #include <string_view>

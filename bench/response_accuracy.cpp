@@ -4,8 +4,6 @@
 // (nu 0.45, radius 0, for these landmarks), else the model at 1e-12.
 #include <chrono>
 #include <cstdio>
-#include <optional>
-#include <utility>
 
 #include <skinbem/io/npy.hpp>
 #include <skinbem/mesh/mesh_io.hpp>

@@ -4,7 +4,6 @@
 // The rule is the plain idea without any transform: halve the triangle until each part is twice as far from the field
 // point as it is long, then a Gauss rule on every part. The kernel is that of pseudo_traction.hpp. Both are measured
 // over those cases of the project's table whose point is off the triangle and its plane.
-#include <cstdio>
 #include <skinbem/operator/element_integral.hpp>
 
 #include "../bench/accuracy_table.hpp"

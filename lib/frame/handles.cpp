@@ -2,7 +2,6 @@
 #include <skinbem/frame/handles.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <skinbem/base/error.hpp>

@@ -2,7 +2,6 @@
 #include <skinbem/frame/packing.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include <skinbem/mesh/adjacency.hpp>
-
 namespace skinbem {
 
 ClusterTree::ClusterTree(const TriangleMesh& mesh) : order_(static_cast<std::size_t>(mesh.vertex_count())) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 #include <skinbem/base/error.hpp>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-
 #include <skinbem/mesh/mesh_formats.hpp>
 #include <skinbem/mesh/polygon_soup.hpp>
 #include <skinbem/mesh/text_scanner.hpp>

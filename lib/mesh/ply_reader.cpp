@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <optional>
 
 #include <skinbem/mesh/mesh_formats.hpp>
 #include <skinbem/mesh/ply_header.hpp>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <skinbem/mesh/weld.hpp>
 
-#include <array>
 #include <bit>
 
 namespace skinbem {

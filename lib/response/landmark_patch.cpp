@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <skinbem/response/landmark_patch.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 #include <skinbem/base/error.hpp>

@@ -5,7 +5,6 @@
 #include <array>
 #include <set>
 
-#include <skinbem/base/error.hpp>
 #include <skinbem/base/text.hpp>
 
 namespace skinbem {

@@ -10,7 +10,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
 

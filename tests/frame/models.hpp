@@ -3,7 +3,6 @@
 /// Small models for the tests of frames: not physical, but with what every response matrix has.
 #pragma once
 
-#include <cmath>
 #include <cstdlib>
 
 #include <Eigen/Geometry>

@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include <skinbem/base/atomic_file.hpp>
-#include <skinbem/io/frame_folder.hpp>
 
 #include "files.hpp"
 #include "small_animation.hpp"

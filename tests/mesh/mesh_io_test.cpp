@@ -6,7 +6,7 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 
 #include <skinbem/base/atomic_file.hpp>
 #include <skinbem/base/error.hpp>

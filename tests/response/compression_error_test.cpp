@@ -6,7 +6,6 @@
 #include <numeric>
 #include <set>
 
-#include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
 
 #include "meshes.hpp"
