@@ -2,6 +2,9 @@
 #include <skinbem/kernels/kelvin_batch.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <type_traits>
+#include <utility>
 
 // Vectors of unknown size cannot be members of a struct; those targets use NEON or scalar code instead.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -282,6 +285,87 @@ void dipoles_of_panel(const Kelvin<double>& kernel, const PointPanel& panel, con
   }
 }
 
+/// One vector of FieldRows.
+template <class D>
+struct RowVector {
+  hn::Vec<D> x, y, z;
+  hn::Mask<D> is[3];  ///< component i
+
+  RowVector(D d, const FieldRows<hn::TFromD<D>>& rows, std::size_t first)
+      : x(hn::Load(d, rows.x + first)), y(hn::Load(d, rows.y + first)), z(hn::Load(d, rows.z + first)) {
+    const auto component = hn::Load(d, rows.component + first);
+    for (int i = 0; i < 3; ++i) is[i] = hn::Eq(component, hn::Set(d, static_cast<hn::TFromD<D>>(i)));
+  }
+};
+
+/// The columns of `count` dipoles, of each the components of kSet, for one vector of rows; columns are `stride` apart.
+template <unsigned kSet, class D, class T = hn::TFromD<D>>
+HWY_INLINE void dipole_columns(D d, const Kelvin<double>& kernel, const RowVector<D>& at,
+                               const DipoleColumns<T>& dipoles, std::size_t begin, std::size_t count,
+                               std::size_t stride, T* HWY_RESTRICT out) {
+  using V = hn::Vec<D>;
+  const double c = kernel.double_layer_factor();
+  const V tensile = hn::Set(d, static_cast<T>(-3 * c));
+  const V slip = hn::Set(d, static_cast<T>(c * (1 - 2 * kernel.poisson)));
+  const auto component_of_row = [&](V x, V y, V z)
+                                    HWY_ATTR { return hn::IfThenElse(at.is[2], z, hn::IfThenElse(at.is[1], y, x)); };
+  for (std::size_t q = begin; q < begin + count; ++q) {
+    const V n[3] = {hn::Set(d, dipoles.normal[0][q]), hn::Set(d, dipoles.normal[1][q]),
+                    hn::Set(d, dipoles.normal[2][q])};
+    const V r[3] = {hn::Sub(hn::Set(d, dipoles.x[q]), at.x), hn::Sub(hn::Set(d, dipoles.y[q]), at.y),
+                    hn::Sub(hn::Set(d, dipoles.z[q]), at.z)};
+    const V r1 = inverse_root(d, hn::MulAdd(r[2], r[2], hn::MulAdd(r[1], r[1], hn::Mul(r[0], r[0]))));
+    const V r_2 = hn::Mul(r1, r1);
+    const V r3 = hn::Mul(r1, r_2);
+    const V height = hn::MulAdd(r[2], n[2], hn::MulAdd(r[1], n[1], hn::Mul(r[0], n[0])));
+    const V ri = component_of_row(r[0], r[1], r[2]);
+    const V ni = component_of_row(n[0], n[1], n[2]);
+    // T_ij = along r_j + across n_j - d_ij same
+    const V slip3 = hn::Mul(slip, r3);
+    const V height5 = hn::Mul(hn::Mul(hn::Mul(tensile, r3), r_2), height);
+    const V along = hn::MulSub(height5, ri, hn::Mul(slip3, ni));
+    const V across = hn::Mul(slip3, ri);
+    const V same = hn::Mul(slip3, height);
+    for (unsigned j = 0; j < 3; ++j) {
+      if (!(kSet >> j & 1)) continue;
+      const V value = hn::MulAdd(along, r[j], hn::Mul(across, n[j]));
+      hn::Store(hn::IfThenElse(at.is[j], hn::Sub(value, same), value), d, out);
+      out += stride;
+    }
+  }
+}
+
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void make_dipole_matrix(D d, const Kelvin<double>& kernel, const FieldRows<T>& rows,
+                                   const DipoleColumns<T>& dipoles, T* out) {
+  for (std::size_t first = 0; first < rows.count; first += hn::Lanes(d)) {
+    const RowVector<D> at(d, rows, first);
+    T* to = out + first;
+    std::size_t q = 0;
+    const auto columns = [&](auto set) HWY_ATTR {
+      constexpr unsigned kSet = decltype(set)::value;
+      const std::size_t count = dipoles.with[kSet];
+      dipole_columns<kSet>(d, kernel, at, dipoles, q, count, rows.count, to);
+      q += count;
+      to += count * static_cast<std::size_t>(std::popcount(kSet)) * rows.count;
+    };
+    [&]<unsigned... kSets>(std::integer_sequence<unsigned, kSets...>) HWY_ATTR {
+      (columns(std::integral_constant<unsigned, kSets>()), ...);
+    }
+    (std::make_integer_sequence<unsigned, 8>());
+  }
+}
+
+void dipole_matrix_f32(const Kelvin<double>& kernel, const FieldRows<float>& rows, const DipoleColumns<float>& dipoles,
+                       float* out) {
+  make_dipole_matrix(D32(), kernel, rows, dipoles, out);
+}
+
+void dipole_matrix_f64(const Kelvin<double>& kernel, const FieldRows<double>& rows,
+                       const DipoleColumns<double>& dipoles, double* out) {
+  make_dipole_matrix(D64(), kernel, rows, dipoles, out);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace skinbem
 HWY_AFTER_NAMESPACE();
@@ -293,6 +377,8 @@ HWY_EXPORT(double_layer_of_panel);
 HWY_EXPORT(double_layer_of_panel_f32);
 HWY_EXPORT(single_layer_of_panel);
 HWY_EXPORT(dipoles_of_panel);
+HWY_EXPORT(dipole_matrix_f32);
+HWY_EXPORT(dipole_matrix_f64);
 
 void add_double_layer(const Kelvin<double>& kernel, const PointPanel& panel, PanelMask mask, const SourcePoints& source,
                       const Eigen::Vector3d& n, double* const out[3]) {
@@ -312,6 +398,16 @@ void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, Pan
 void double_layer_of_dipoles(const Kelvin<double>& kernel, const PointPanel& panel, const Dipoles& dipoles,
                              double* out) {
   HWY_DYNAMIC_DISPATCH(dipoles_of_panel)(kernel, panel, dipoles, out);
+}
+
+void dipole_matrix(const Kelvin<double>& kernel, const FieldRows<float>& rows, const DipoleColumns<float>& dipoles,
+                   float* out) {
+  HWY_DYNAMIC_DISPATCH(dipole_matrix_f32)(kernel, rows, dipoles, out);
+}
+
+void dipole_matrix(const Kelvin<double>& kernel, const FieldRows<double>& rows, const DipoleColumns<double>& dipoles,
+                   double* out) {
+  HWY_DYNAMIC_DISPATCH(dipole_matrix_f64)(kernel, rows, dipoles, out);
 }
 
 const char* instruction_set() {

@@ -23,6 +23,12 @@ void add_single_layer(const Kelvin<double>& kernel, const PointPanel& panel, Pan
 void double_layer_of_dipoles(const Kelvin<double>& kernel, const PointPanel& panel, const Dipoles& dipoles,
                              double* out);
 
+/// As the template in panel.hpp.
+void dipole_matrix(const Kelvin<double>& kernel, const FieldRows<float>& rows, const DipoleColumns<float>& dipoles,
+                   float* out);
+void dipole_matrix(const Kelvin<double>& kernel, const FieldRows<double>& rows, const DipoleColumns<double>& dipoles,
+                   double* out);
+
 /// Name of the instruction set in use, such as "AVX3".
 const char* instruction_set();
 

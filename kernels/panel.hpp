@@ -4,6 +4,7 @@
 /// A kernel with a SIMD version overloads these two functions (kelvin_batch.hpp).
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 
@@ -43,6 +44,46 @@ struct Dipoles {
   const double* z;
   const double* normal[3];
 };
+
+/// Components of the field at single points: rows of a matrix of dipoles. #count, a multiple of kPanel, each array
+/// aligned to 64 bytes.
+template <class Real>
+struct FieldRows {
+  std::size_t count;
+  const Real* x;
+  const Real* y;
+  const Real* z;
+  const Real* component;  ///< i of T_ij: 0, 1 or 2
+};
+
+/// Components of dipoles: columns of a matrix. Dipoles of which the same components are there stand together.
+template <class Real>
+struct DipoleColumns {
+  std::array<std::size_t, 8> with;  ///< number of dipoles by set of components (bit j for T_ij), in this order
+  const Real* x;
+  const Real* y;
+  const Real* z;
+  const Real* normal[3];
+};
+
+/// The matrix T_ij(x_r; y_q, n_q), column by column to out[k rows.count + r], aligned to 64 bytes; columns k in the
+/// order of the dipoles, those of one dipole by rising j. No point may be a dipole's place.
+template <class Kernel, class Real>
+void dipole_matrix(const Kernel& kernel, const FieldRows<Real>& rows, const DipoleColumns<Real>& dipoles, Real* out) {
+  std::size_t q = 0;
+  for (unsigned set = 0; set < dipoles.with.size(); ++set) {
+    for (const std::size_t end = q + dipoles.with[set]; q < end; ++q) {
+      const Eigen::Vector3d n(dipoles.normal[0][q], dipoles.normal[1][q], dipoles.normal[2][q]);
+      for (unsigned j = 0; j < Kernel::components; ++j) {
+        if (!(set >> j & 1)) continue;
+        for (std::size_t r = 0; r < rows.count; ++r) {
+          const Eigen::Vector3d to(dipoles.x[q] - rows.x[r], dipoles.y[q] - rows.y[r], dipoles.z[q] - rows.z[r]);
+          *out++ = static_cast<Real>(kernel.double_layer(to, n)(Eigen::Index(rows.component[r]), j));
+        }
+      }
+    }
+  }
+}
 
 /// The double layer's values T_ij(x_p; y_q, n_q) of every dipole q at every point p of a panel, to
 /// out[(q components^2 + components i + j) kPanel + p], aligned to 64 bytes. No point may be a dipole's place.

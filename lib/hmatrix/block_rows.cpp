@@ -22,8 +22,9 @@ std::size_t scale_index(const BlockRow& row, Index first, Index k) {
 }  // namespace
 
 template <class T>
-std::size_t BlockRows<T>::add(WorkRange out, std::vector<WorkRange> sources, bool packed) {
-  BlockRow row{out, std::move(sources), packed && std::is_same_v<T, float>};
+std::size_t BlockRows<T>::add(BlockRow row) {
+  row.packed = row.packed && std::is_same_v<T, float>;
+  row.width = 0;
   for (const WorkRange& source : row.sources) row.width += source.length;
   rows_.push_back(std::move(row));
   return rows_.size() - 1;
@@ -87,7 +88,7 @@ void BlockRows<T>::multiply_tile_of(const BlockRow& row, Index first, Index colu
 
 template <class T>
 template <class Wanted>
-bool BlockRows<T>::multiply_row(const BlockRow& row, Block& work, const Wanted& wanted) const {
+bool BlockRows<T>::multiply_row(const BlockRow& row, Block& work, bool adds, const Wanted& wanted) const {
   struct Run {  // of sources that are wanted, one after the other
     Index column;
     std::size_t first, count;
@@ -106,14 +107,15 @@ bool BlockRows<T>::multiply_row(const BlockRow& row, Block& work, const Wanted& 
     }
     column += source.length;
   }
-  Block part(tile_height, runs.size() > 1 ? work.cols() : 0);
+  Block part(tile_height, adds || runs.size() > 1 ? work.cols() : 0);
   for (Index first = 0; first < row.out.length; first += tile_height) {
     const Index height = height_of(row, first);
     for (std::size_t k = 0; k < runs.size(); ++k) {
       const auto sources = std::span<const RowRange<T>>(ranges).subspan(runs[k].first, runs[k].count);
+      const bool added = adds || k > 0;
       T* out = work.row(row.out.first + first).data();
-      multiply_tile_of(row, first, runs[k].column, sources, work.cols(), k == 0 ? out : part.data());
-      if (k > 0) work.middleRows(row.out.first + first, height) += part.topRows(height);
+      multiply_tile_of(row, first, runs[k].column, sources, work.cols(), added ? part.data() : out);
+      if (added) work.middleRows(row.out.first + first, height) += part.topRows(height);
     }
   }
   return !runs.empty();
@@ -125,7 +127,9 @@ void BlockRows<T>::run(Block& work) const {
   for (std::size_t s = 0; s < stages_.size(); ++s) {
     const std::size_t last = s + 1 < stages_.size() ? stages_[s + 1] : rows_.size();
 #pragma omp for schedule(dynamic, 1)
-    for (std::size_t k = stages_[s]; k < last; ++k) multiply_row(rows_[k], work, [](const WorkRange&) { return true; });
+    for (std::size_t k = stages_[s]; k < last; ++k) {
+      multiply_row(rows_[k], work, rows_[k].adds, [](const WorkRange&) { return true; });
+    }
   }
 }
 
@@ -133,7 +137,7 @@ template <class T>
 void BlockRows<T>::run_sparse(Block& work, std::vector<char>& filled) const {
   const auto is_filled = [&](const WorkRange& range) -> char& { return filled[range.first / Index(kTileStep)]; };
   for (const BlockRow& row : rows_) {
-    if (multiply_row(row, work, is_filled)) is_filled(row.out) = true;
+    if (multiply_row(row, work, row.adds && is_filled(row.out), is_filled)) is_filled(row.out) = true;
   }
 }
 

@@ -22,11 +22,12 @@ struct WorkRange {
 /// The next multiple of `step`.
 inline Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
 
-/// out = A times the stacked `sources`.
+/// out = A times the stacked `sources`, or out += that.
 struct BlockRow {
   WorkRange out;  ///< the length a multiple of kTileStep
   std::vector<WorkRange> sources;
   bool packed = false;           ///< numbers in 16 bits (PackedTile)
+  bool adds = false;             ///< to what is there
   Index width = 0;               ///< sum of the sources' lengths
   std::size_t offset = 0;        ///< of its numbers among those of its kind
   std::size_t scale_offset = 0;  ///< of its tiles' scales, where it is packed
@@ -46,8 +47,8 @@ class BlockRows {
 
   /// Rows that are added from now on belong to a new stage.
   void begin_stage() { stages_.push_back(rows_.size()); }
-  /// Its number. Numbers in double are never packed.
-  std::size_t add(WorkRange out, std::vector<WorkRange> sources, bool packed = false);
+  /// Its number. Numbers in double are never packed; offsets and width are set here and by allocate().
+  std::size_t add(BlockRow row);
   /// After the last row: storage for the numbers of all of them, not initialised.
   void allocate();
 
@@ -71,9 +72,9 @@ class BlockRows {
   static std::size_t bytes(const BlockRow& row);
 
  private:
-  /// From the sources that are wanted; false where there are none.
+  /// From the sources that are wanted, added to what is there or not; false where there are none.
   template <class Wanted>
-  bool multiply_row(const BlockRow& row, Block& work, const Wanted& wanted) const;
+  bool multiply_row(const BlockRow& row, Block& work, bool adds, const Wanted& wanted) const;
   void multiply_tile_of(const BlockRow& row, Index first, Index column, std::span<const RowRange<T>> ranges,
                         Index columns, T* out) const;
 

@@ -14,6 +14,16 @@ namespace {
 
 constexpr std::int32_t most_packed_vertices = 3 * ClusterTree::leaf_size;  ///< of a cluster
 
+WorkRange filled_up(const WorkRange& range) { return {range.first, round_up(range.length, kTileStep)}; }
+
+/// Its number; `bytes` grows by what it takes.
+template <class T>
+std::int32_t add_row(BlockRows<T>& schedule, BlockRow row, std::size_t& bytes) {
+  const std::size_t number = schedule.add(std::move(row));
+  bytes += BlockRows<T>::bytes(schedule.row(number));
+  return std::int32_t(number);
+}
+
 }  // namespace
 
 template <class T>
@@ -40,11 +50,9 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
   const NestedBases bases =
       make_nested_bases(mesh, tree_, partition_, collocation, kernel, {options.tolerance, options.samples},
                         [&](double fraction) { report(progress, "compress", bases_share * fraction); });
-  plan(bases);
+  plan(bases, kernel);
   fill_bases(bases);
   summary_.basis_seconds = watch.lap();
-  fill_couplings(bases, kernel);
-  summary_.coupling_seconds = watch.lap();
   fill_near(collocation, progress);
   set_diagonal();
   keep_exact_rows(mesh, collocation);
@@ -54,7 +62,7 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
 /// Lays out workspace and schedule: vectors in, coefficients of column skeletons from the leaves up, those of row
 /// skeletons from the root down, vectors out.
 template <class T>
-void CompressedMatrix<T>::plan(const NestedBases& bases) {
+void CompressedMatrix<T>::plan(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel) {
   Index end = rows_;
   const auto reserve = [&](const std::vector<ClusterBasis>& of) {
     std::vector<WorkRange> ranges;
@@ -66,10 +74,14 @@ void CompressedMatrix<T>::plan(const NestedBases& bases) {
   };
   const std::vector<WorkRange> columns = reserve(bases.columns), rows = reserve(bases.rows);
   work_rows_ = end + rows_;
+  couplings_ = Couplings<T>(kernel, bases, partition_, rows, columns);
   plan_upwards(columns);
-  plan_downwards(columns, rows);
+  plan_downwards(rows);
   plan_leaves(rows, end);
-  schedule_.allocate();
+  upwards_.allocate();
+  downwards_.allocate();
+  summary_.coupling_bytes = couplings_.bytes();
+  summary_.coupling_numbers = couplings_.numbers();
 
   const auto add_rank = [](double sum, const WorkRange& range) { return sum + double(range.length); };
   const auto used = [](const WorkRange& range) { return range.length > 0; };
@@ -81,13 +93,8 @@ void CompressedMatrix<T>::plan(const NestedBases& bases) {
 }
 
 template <class T>
-std::int32_t CompressedMatrix<T>::add_row(WorkRange out, std::vector<WorkRange> sources, const Cluster& cluster,
-                                          std::size_t& bytes) {
-  const WorkRange filled{out.first, round_up(out.length, kTileStep)};
-  const bool packed = packed_ && cluster.size() <= most_packed_vertices;
-  const std::size_t row = schedule_.add(filled, std::move(sources), packed);
-  bytes += BlockRows<T>::bytes(schedule_.row(row));
-  return std::int32_t(row);
+bool CompressedMatrix<T>::is_packed(const Cluster& cluster) const {
+  return packed_ && cluster.size() <= most_packed_vertices;
 }
 
 /// Coefficients of the columns' skeletons, from a leaf's degrees of freedom or those of the two children.
@@ -95,7 +102,7 @@ template <class T>
 void CompressedMatrix<T>::plan_upwards(const std::vector<WorkRange>& columns) {
   up_.assign(columns.size(), -1);
   for (std::size_t level = tree_.levels().size() - 1; level-- > 0;) {
-    schedule_.begin_stage();
+    upwards_.begin_stage();
     for (std::int32_t c = tree_.levels()[level]; c < tree_.levels()[level + 1]; ++c) {
       if (columns[c].length == 0) continue;
       const Cluster& cluster = tree_.clusters()[c];
@@ -105,24 +112,23 @@ void CompressedMatrix<T>::plan_upwards(const std::vector<WorkRange>& columns) {
       } else {
         for (const std::int32_t child : cluster.children) sources.push_back(columns[child]);
       }
-      up_[c] = add_row(columns[c], std::move(sources), cluster, summary_.basis_bytes);
+      up_[c] = add_row(upwards_, {filled_up(columns[c]), std::move(sources), is_packed(cluster)}, summary_.basis_bytes);
     }
   }
 }
 
-/// Coefficients of the rows' skeletons, from those of far columns and of the parent.
+/// What a parent adds to the coefficients of the rows' skeletons.
 template <class T>
-void CompressedMatrix<T>::plan_downwards(const std::vector<WorkRange>& columns, const std::vector<WorkRange>& rows) {
-  coupling_.assign(rows.size(), -1);
+void CompressedMatrix<T>::plan_downwards(const std::vector<WorkRange>& rows) {
+  down_.assign(rows.size(), -1);
   for (std::size_t level = 0; level + 1 < tree_.levels().size(); ++level) {
-    schedule_.begin_stage();
+    downwards_.begin_stage();
     for (std::int32_t c = tree_.levels()[level]; c < tree_.levels()[level + 1]; ++c) {
-      if (rows[c].length == 0) continue;
-      std::vector<WorkRange> sources;
-      for (const std::int32_t partner : partition_.far[c]) sources.push_back(columns[partner]);
-      const std::int32_t parent = tree_.clusters()[c].parent;
-      if (parent >= 0 && rows[parent].length > 0) sources.push_back(rows[parent]);
-      coupling_[c] = add_row(rows[c], std::move(sources), tree_.clusters()[c], summary_.coupling_bytes);
+      const Cluster& cluster = tree_.clusters()[c];
+      if (cluster.parent < 0 || rows[cluster.parent].length == 0) continue;
+      down_[c] = add_row(downwards_,
+                         {filled_up(rows[c]), {rows[cluster.parent]}, is_packed(cluster), couplings_.has_partners(c)},
+                         summary_.basis_bytes);
     }
   }
 }
@@ -131,16 +137,16 @@ void CompressedMatrix<T>::plan_downwards(const std::vector<WorkRange>& columns, 
 template <class T>
 void CompressedMatrix<T>::plan_leaves(const std::vector<WorkRange>& rows, Index out) {
   out_.assign(rows.size(), -1);
-  schedule_.begin_stage();
+  downwards_.begin_stage();
   for (const std::int32_t leaf : tree_.leaves()) {
     std::vector<WorkRange> sources;
     for (const std::int32_t neighbour : partition_.near[leaf]) {
       sources.push_back(dofs_of(tree_.clusters()[neighbour]));
     }
     if (rows[leaf].length > 0) sources.push_back(rows[leaf]);
-    const Cluster& cluster = tree_.clusters()[leaf];
-    const WorkRange dofs = dofs_of(cluster);
-    out_[leaf] = add_row({out + dofs.first, dofs.length}, std::move(sources), cluster, summary_.near_bytes);
+    const WorkRange dofs = dofs_of(tree_.clusters()[leaf]);
+    out_[leaf] =
+        add_row(downwards_, {{out + dofs.first, dofs.length}, std::move(sources), packed_}, summary_.near_bytes);
   }
 }
 
@@ -218,7 +224,9 @@ void CompressedMatrix<T>::multiply(const VectorBlock& X, VectorBlock& Y, Block& 
   for (Index row = 0; row < rows_; row += panel_rows) {
     work.middleRows(row, panel_rows) = X.middleRows(row, panel_rows).template cast<T>();
   }
-  schedule_.run(work);
+  upwards_.run(work);
+  couplings_.run(work);
+  downwards_.run(work);
   finish_product(X, work, Y);
 }
 
@@ -233,7 +241,9 @@ void CompressedMatrix<T>::multiply_sparse(const VectorBlock& X, VectorBlock& Y, 
     filled[dofs.first / Index(kTileStep)] = true;
   }
   work.bottomRows(rows_).setZero();
-  schedule_.run_sparse(work, filled);
+  upwards_.run_sparse(work, filled);
+  couplings_.run_sparse(work, filled);
+  downwards_.run_sparse(work, filled);
   finish_product(X, work, Y);
 }
 
@@ -290,7 +300,7 @@ Eigen::MatrixXf CompressedMatrix<T>::near_entries(const std::vector<std::int32_t
       const std::int32_t column_place = places[c] - tree_.clusters()[column_leaf].begin;
       for (int j = 0; j < components; ++j) {
         T numbers[kTile];
-        schedule_.get_column(out_[row_leaf], tile, first + tree_row(column_place, j, components), numbers);
+        downwards_.get_column(out_[row_leaf], tile, first + tree_row(column_place, j, components), numbers);
         for (Index k = r; k < next; ++k) {
           for (int i = 0; i < components; ++i) {
             entries(components * k + i, components * c + j) =
@@ -332,7 +342,7 @@ std::size_t predict_compressed_bytes(const TriangleMesh& mesh, const Compression
   for (std::size_t c = 0; c < tree.clusters().size(); ++c) {
     const Cluster& cluster = tree.clusters()[c];
     const double dofs = components * cluster.size();
-    double numbers = double(partition.far[c].size()) * rank * rank;
+    double numbers = 0;
     for (const std::int32_t other : partition.near[c]) numbers += dofs * components * tree.clusters()[other].size();
     if (has_far_field[c]) numbers += 2 * rank * (cluster.is_leaf() ? dofs : 2 * rank);
     const bool packed = options.packed && number_bytes == sizeof(float) && cluster.size() <= most_packed_vertices;

@@ -7,8 +7,8 @@
 
 #include <skinbem/base/progress.hpp>
 #include <skinbem/hmatrix/block_rows.hpp>
+#include <skinbem/hmatrix/couplings.hpp>
 #include <skinbem/hmatrix/exact_rows.hpp>
-#include <skinbem/hmatrix/nested_basis.hpp>
 
 namespace skinbem {
 
@@ -28,14 +28,14 @@ struct CompressionOptions {
 
 /// What it took. Sizes in bytes.
 struct CompressionSummary {
-  std::size_t near_bytes = 0;      ///< blocks of neighbouring leaves, dense
-  std::size_t coupling_bytes = 0;  ///< between skeletons
+  std::size_t near_bytes = 0;  ///< blocks of neighbouring leaves, dense
   std::size_t basis_bytes = 0;
-  double mean_rank = 0;  ///< of all bases
+  std::size_t coupling_bytes = 0;    ///< skeletons, from which couplings are computed in every product
+  std::size_t coupling_numbers = 0;  ///< entries of the couplings
+  double mean_rank = 0;              ///< of all bases
   Index exact_vertices = 0;
   double basis_seconds = 0;
   double near_seconds = 0;
-  double coupling_seconds = 0;
 };
 
 /// H (3N by 3N) with T = float or double numbers, as near blocks of neighbouring leaves, and for the far field nested
@@ -73,9 +73,9 @@ class CompressedMatrix {
   const ClusterTree& tree() const { return tree_; }
   const BlockPartition& partition() const { return partition_; }
   const CompressionSummary& summary() const { return summary_; }
-  std::size_t bytes() const { return schedule_.bytes(); }
+  std::size_t bytes() const { return upwards_.bytes() + couplings_.bytes() + downwards_.bytes(); }
   /// Multiplications and additions of a product, by column.
-  std::size_t numbers() const { return schedule_.numbers(); }
+  std::size_t numbers() const { return upwards_.numbers() + couplings_.numbers() + downwards_.numbers(); }
 
  private:
   static constexpr int components = 3;
@@ -85,15 +85,14 @@ class CompressedMatrix {
   static WorkRange dofs_of(const Cluster& leaf);
 
   // the layout
-  void plan(const NestedBases& bases);
+  void plan(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
   void plan_upwards(const std::vector<WorkRange>& columns);
-  void plan_downwards(const std::vector<WorkRange>& columns, const std::vector<WorkRange>& rows);
+  void plan_downwards(const std::vector<WorkRange>& rows);
   void plan_leaves(const std::vector<WorkRange>& rows, Index out);
-  /// Its number; `bytes` grows by what it takes.
-  std::int32_t add_row(WorkRange out, std::vector<WorkRange> sources, const Cluster& cluster, std::size_t& bytes);
+  /// Whether the numbers of its block rows take 16 bits.
+  bool is_packed(const Cluster& cluster) const;
   // the numbers: compressed_numbers.cpp
   void fill_bases(const NestedBases& bases);
-  void fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
   void fill_near(const Collocation<Kelvin<double>>& collocation, const Progress& progress);
   void fill_near_leaf(const Collocation<Kelvin<double>>& collocation, std::int32_t leaf);
   // what is not compressed
@@ -109,12 +108,14 @@ class CompressedMatrix {
   BlockPartition partition_;
   Index rows_ = 0;
   bool packed_;
-  BlockRows<T> schedule_;
+  BlockRows<T> upwards_;    ///< coefficients of the columns' skeletons
+  Couplings<T> couplings_;  ///< from them those of the rows' skeletons
+  BlockRows<T> downwards_;  ///< and what comes out
   std::vector<Mat3> diagonal_;
   std::vector<std::int32_t> exact_places_;
   RowMajorMatrix exact_rows_;  ///< of H: 3 #exact_places by rows, in the tree's order
   std::vector<std::int32_t> leaf_of_place_;
-  std::vector<std::int32_t> up_, coupling_, out_;  ///< block row by cluster, -1 where there is none
+  std::vector<std::int32_t> up_, down_, out_;  ///< block row by cluster, -1 where there is none
   Index work_rows_ = 0;
   CompressionSummary summary_;
 };

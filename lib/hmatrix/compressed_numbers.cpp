@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers of a CompressedMatrix: bases, couplings and near blocks.
+// The numbers of a CompressedMatrix: bases and near blocks.
 #include <algorithm>
 
 #include <skinbem/hmatrix/compressed_matrix.hpp>
 
 namespace skinbem {
 namespace {
-
-std::vector<PointList> points_of(const std::vector<ClusterBasis>& bases) {
-  std::vector<PointList> lists;
-  for (const ClusterBasis& basis : bases) lists.emplace_back(basis.skeleton);
-  return lists;
-}
 
 /// What the columns of a block row multiply.
 enum class Columns { coefficients, displacements };
@@ -55,49 +49,20 @@ void CompressedMatrix<T>::fill_bases(const NestedBases& bases) {
     if (up_[c] >= 0) {
       const Eigen::MatrixXd& Q = bases.columns[c].interpolation;
       const Columns kind = tree_.clusters()[c].is_leaf() ? Columns::displacements : Columns::coefficients;
-      fill(schedule_, up_[c], 0, kind, Q.cols(), Q.rows(), [&](Index r, Index k) { return Q(k, r); });
+      fill(upwards_, up_[c], 0, kind, Q.cols(), Q.rows(), [&](Index r, Index k) { return Q(k, r); });
     }
-    // the part of the parent's row coefficients that belongs to this child
-    const std::int32_t parent = tree_.clusters()[c].parent;
-    if (coupling_[c] >= 0 && parent >= 0 && coupling_[parent] >= 0) {
+    if (down_[c] >= 0) {  // the part of the parent's row coefficients that belongs to this child
+      const std::int32_t parent = tree_.clusters()[c].parent;
       const Eigen::MatrixXd& P = bases.rows[parent].interpolation;
-      const bool second = tree_.clusters()[parent].children[1] == c;
-      const Index begin = second ? P.rows() - Index(bases.rows[c].skeleton.size()) : 0;
-      fill(schedule_, coupling_[c], schedule_.row(coupling_[c]).width - P.cols(), Columns::coefficients,
-           Index(bases.rows[c].skeleton.size()), P.cols(), [&](Index r, Index k) { return P(begin + r, k); });
+      const Index rank = Index(bases.rows[c].skeleton.size());
+      const Index begin = tree_.clusters()[parent].children[1] == c ? P.rows() - rank : 0;
+      fill(downwards_, down_[c], 0, Columns::coefficients, rank, P.cols(),
+           [&](Index r, Index k) { return P(begin + r, k); });
     }
-    if (out_[c] >= 0 && coupling_[c] >= 0) {
+    if (out_[c] >= 0 && !bases.rows[c].skeleton.empty()) {
       const Eigen::MatrixXd& P = bases.rows[c].interpolation;
-      fill(schedule_, out_[c], schedule_.row(out_[c]).width - P.cols(), Columns::coefficients, P.rows(), P.cols(),
+      fill(downwards_, out_[c], downwards_.row(out_[c]).width - P.cols(), Columns::coefficients, P.rows(), P.cols(),
            [&](Index r, Index k) { return P(r, k); });
-    }
-  }
-}
-
-template <class T>
-void CompressedMatrix<T>::fill_couplings(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel) {
-  const std::vector<PointList> rows = points_of(bases.rows), columns = points_of(bases.columns);
-  const std::int32_t count = std::int32_t(tree_.clusters().size());
-  constexpr std::size_t entries = components * components;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::int32_t c = 0; c < count; ++c) {
-    Index first = 0;
-    const Index rank = Index(bases.rows[c].skeleton.size());
-    std::vector<std::size_t> row_offset(bases.rows[c].skeleton.size());
-    for (const std::int32_t partner : partition_.far[c]) {
-      const std::size_t sources = columns[partner].points.size();
-      const double* values = kernel.values(rows[c].points, columns[partner].points);
-      for (std::size_t r = 0; r < row_offset.size(); ++r) {
-        const std::size_t point = rows[c].of_dof[r];
-        row_offset[r] =
-            (point / kPanel * sources * entries + components * bases.rows[c].skeleton[r].component) * kPanel +
-            point % kPanel;
-      }
-      const std::vector<Dof>& skeleton = bases.columns[partner].skeleton;
-      fill(schedule_, coupling_[c], first, Columns::coefficients, rank, Index(skeleton.size()), [&](Index r, Index k) {
-        return values[row_offset[r] + (columns[partner].of_dof[k] * entries + skeleton[k].component) * kPanel];
-      });
-      first += Index(skeleton.size());
     }
   }
 }
@@ -136,7 +101,7 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
       const bool full = neighbour.size() % std::int32_t(kPanel) == 0;
       for (Index k = full ? dofs.length : dofs.length - components * Index(kPanel); k < dofs.length; ++k) {
         for (Index r = 0; r < dofs_of(cluster).length; r += Index(kTile)) {
-          schedule_.set_column(out_[leaf], r, first_column + k, zeros);
+          downwards_.set_column(out_[leaf], r, first_column + k, zeros);
         }
       }
       first_column += dofs.length;
@@ -151,7 +116,7 @@ void CompressedMatrix<T>::fill_near_leaf(const Collocation<Kelvin<double>>& coll
                 const T* from = entries + (c * components * components + components * i + j) * kPanel;
                 for (std::size_t p = 0; p < kPanel; ++p) numbers[i * kPanel + p] += from[p];
               }
-              schedule_.set_column(out_[leaf], Index(row) * components, column, numbers);
+              downwards_.set_column(out_[leaf], Index(row) * components, column, numbers);
             }
           }
         });

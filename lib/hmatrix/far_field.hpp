@@ -20,13 +20,18 @@ class PointKernel {
 
   PointKernel(const TriangleMesh& mesh, const ClusterTree& tree, const Kernel& kernel);
 
+  const Kernel& kernel() const { return kernel_; }
+  /// Places, times a power of two that brings them near unit size.
+  const Eigen::Vector3d& vertex(std::int32_t place) const { return vertices_[place]; }
+  const Eigen::Vector3d& centroid(std::int32_t triangle) const { return centroids_[triangle]; }
+  const Eigen::Vector3d& normal(std::int32_t triangle) const { return normals_[triangle]; }
   /// Values at `points` (places) of dipoles at `sources` (triangles): entry (i, j) of point p and source q is
   /// result[((p / kPanel #sources + q) components^2 + components i + j) kPanel + p % kPanel]. Valid until the next call
   /// of this thread.
   const double* values(std::span<const std::int32_t> points, std::span<const std::int32_t> sources) const;
 
  private:
-  std::vector<Eigen::Vector3d> vertices_;  ///< times a power of two that brings them near unit size
+  std::vector<Eigen::Vector3d> vertices_;
   std::vector<Eigen::Vector3d> centroids_;
   std::vector<Eigen::Vector3d> normals_;
   Kernel kernel_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 #include <skinbem/base/lapack.hpp>
 #include <skinbem/hmatrix/tile_product.hpp>
@@ -58,7 +59,7 @@ class BasisMaker {
     const MatrixMap A = field_of(candidates);
     MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
     lapack::gram_matrix(A, gram);
-    return basis(candidates, select_columns(gram, tolerance_));
+    return by_components(basis(candidates, select_columns(gram, tolerance_)));
   }
 
  private:
@@ -139,13 +140,28 @@ class BasisMaker {
       fitted += weights.col(Index(k)).dot(of_hats.col(all.columns[k]));
     const double whole = hats.squaredNorm();
     all.weights = fill_up(leaf, weights);
-    return {basis(candidates, std::move(all)), std::sqrt(std::max(0.0, whole - fitted) / whole)};
+    return {by_components(basis(candidates, std::move(all))), std::sqrt(std::max(0.0, whole - fitted) / whole)};
   }
 
   static ClusterBasis basis(const std::vector<Dof>& candidates, ColumnSelection selection) {
     ClusterBasis result;
     for (const std::int32_t k : selection.columns) result.skeleton.push_back(candidates[k]);
     result.interpolation = std::move(selection.weights);
+    return result;
+  }
+  /// In the order of DipoleColumns: dipoles of which the same components are there stand together.
+  static ClusterBasis by_components(const ClusterBasis& columns) {
+    const std::vector<Dof>& dofs = columns.skeleton;
+    const PointList list(dofs);
+    std::vector<unsigned> set(list.points.size());
+    for (std::size_t k = 0; k < dofs.size(); ++k) set[list.of_dof[k]] |= 1u << dofs[k].component;
+    std::vector<Index> order(dofs.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto key = [&](Index k) { return std::tuple(set[list.of_dof[k]], dofs[k].point, dofs[k].component); };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    ClusterBasis result;
+    for (const Index k : order) result.skeleton.push_back(dofs[k]);
+    result.interpolation = columns.interpolation(Eigen::all, order);
     return result;
   }
   /// From vertex by vertex to the order of a leaf's tiles.

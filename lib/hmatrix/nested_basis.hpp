@@ -27,6 +27,7 @@ struct PointList {
 /// follow. Rows: candidates are a leaf's vertices. Columns: dipoles of the triangles around them. Above the leaves:
 /// what the two children kept.
 struct ClusterBasis {
+  /// Of columns in the order of DipoleColumns.
   std::vector<Dof> skeleton;
   /// #degrees of freedom by #skeleton: their rows of the far field from the skeleton's, or the transpose for columns.
   /// Degrees of freedom: of a leaf, as in a tile, by panel, component, vertex, filled up to whole panels with zeros;

@@ -21,9 +21,6 @@ namespace skinbem {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// So many columns of a tile are used for all right-hand sides before the next are read: they stay in the first-level
-/// cache.
-constexpr std::size_t kDepth = 96;
 /// Columns of the result that are summed at once, beside three vectors of rows: as registers allow.
 constexpr std::size_t kColumns = HWY_TARGET <= HWY_AVX3 ? 6 : 4;
 
@@ -140,9 +137,24 @@ HWY_INLINE void multiply(Tile tile, std::size_t height, std::span<const RowRange
       multiply_slice(slice, height, depth, range.first + done * columns, columns, sums, ahead);
     }
   }
-  for (std::size_t r = 0; r < height; ++r) {
-    for (std::size_t c = 0; c < columns; ++c) out[r * columns + c] = sums[c * kTile + r];
-  }
+  store_sums(sums, height, columns, out);
+}
+
+/// Nothing follows that could be asked for.
+template <class T>
+HWY_INLINE void add_single_slice(const T* slice, std::size_t height, std::size_t depth, const T* rhs,
+                                 std::size_t columns, T* sums) {
+  multiply_slice(slice, height, depth, rhs, columns, sums, {reinterpret_cast<const char*>(slice), 0});
+}
+
+void add_slice_f32(const float* slice, std::size_t height, std::size_t depth, const float* rhs, std::size_t columns,
+                   float* sums) {
+  add_single_slice(slice, height, depth, rhs, columns, sums);
+}
+
+void add_slice_f64(const double* slice, std::size_t height, std::size_t depth, const double* rhs, std::size_t columns,
+                   double* sums) {
+  add_single_slice(slice, height, depth, rhs, columns, sums);
 }
 
 void multiply_f32(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
@@ -189,6 +201,8 @@ namespace skinbem {
 HWY_EXPORT(multiply_f32);
 HWY_EXPORT(multiply_f64);
 HWY_EXPORT(multiply_packed);
+HWY_EXPORT(add_slice_f32);
+HWY_EXPORT(add_slice_f64);
 HWY_EXPORT(pack);
 
 void multiply_tile(const float* tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
@@ -204,6 +218,16 @@ void multiply_tile(const double* tile, std::size_t height, std::span<const RowRa
 void multiply_tile(PackedTile tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
                    float* out) {
   HWY_DYNAMIC_DISPATCH(multiply_packed)(tile, height, ranges, columns, out);
+}
+
+void add_slice(const float* slice, std::size_t height, std::size_t depth, const float* rhs, std::size_t columns,
+               float* sums) {
+  HWY_DYNAMIC_DISPATCH(add_slice_f32)(slice, height, depth, rhs, columns, sums);
+}
+
+void add_slice(const double* slice, std::size_t height, std::size_t depth, const double* rhs, std::size_t columns,
+               double* sums) {
+  HWY_DYNAMIC_DISPATCH(add_slice_f64)(slice, height, depth, rhs, columns, sums);
 }
 
 float pack_column(float* values, std::size_t height, std::int16_t* numbers) {

@@ -40,6 +40,25 @@ void multiply_tile(const double* tile, std::size_t height, std::span<const RowRa
 void multiply_tile(PackedTile tile, std::size_t height, std::span<const RowRange<float>> ranges, std::size_t columns,
                    float* out);
 
+/// At most so many columns of a tile are multiplied with all right-hand sides before the next: they and their sums stay
+/// in the first-level cache.
+inline constexpr std::size_t kDepth = 96;
+
+/// Adds `slice`, height by depth <= kDepth, column by column and aligned to 64 bytes, times `rhs`, depth by #columns,
+/// row-major, to sums[c kTile + r].
+void add_slice(const float* slice, std::size_t height, std::size_t depth, const float* rhs, std::size_t columns,
+               float* sums);
+void add_slice(const double* slice, std::size_t height, std::size_t depth, const double* rhs, std::size_t columns,
+               double* sums);
+
+/// From such sums to rows.
+template <class T>
+void store_sums(const T* sums, std::size_t height, std::size_t columns, T* out) {
+  for (std::size_t r = 0; r < height; ++r) {
+    for (std::size_t c = 0; c < columns; ++c) out[r * columns + c] = sums[c * kTile + r];
+  }
+}
+
 /// One column of a PackedTile from `height` values, and its scale. The values become what is lost: at most half of the
 /// scale, 1/65534 of the largest value.
 float pack_column(float* values, std::size_t height, std::int16_t* numbers);

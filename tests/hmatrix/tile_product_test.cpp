@@ -71,9 +71,9 @@ struct TwoStages {
 
   explicit TwoStages(bool packed) {
     rows.begin_stage();
-    const std::size_t first = rows.add({n, m}, {{0, n}}, packed);
+    const std::size_t first = rows.add({{n, m}, {{0, n}}, packed});
     rows.begin_stage();
-    const std::size_t second = rows.add({n + m, n}, {{n, m}, {0, n}}, packed);
+    const std::size_t second = rows.add({{n + m, n}, {{n, m}, {0, n}}, packed});
     rows.allocate();
     set(first, A);
     set(second, B);
@@ -102,6 +102,43 @@ TYPED_TEST(TileProduct, OfBlockRowsRunsStageAfterStage) {
   const TwoStages<T> stages(false);
   EXPECT_LE(stages.error(), sizeof(T) == 4 ? tolerance::tile_product_f32 : tolerance::rounding_of_sums);
   EXPECT_EQ(stages.rows.bytes(), sizeof(T) * std::size_t(80 * 64 + 80 * 144));
+}
+
+/// out += A x where out is filled, out = A x where it is not, and nothing where x is not.
+TYPED_TEST(TileProduct, OfBlockRowsAddsWhereThereIsSomethingToAddTo) {
+  using T = TypeParam;
+  using Matrix = typename TestFixture::Matrix;
+  constexpr Index n = 64, m = 80;
+  const Matrix A = Matrix::Random(m, n);
+  BlockRows<T> rows;
+  rows.begin_stage();
+  rows.add({{n, m}, {{0, n}}, false, true});
+  rows.allocate();
+  for (Index k = 0; k < n; ++k) {
+    for (Index r = 0; r < m; r += Index(kTile)) {
+      Matrix column = A.col(k).segment(r, std::min(Index(kTile), m - r));
+      rows.set_column(0, r, k, column.data());
+    }
+  }
+  const typename BlockRows<T>::Block start = BlockRows<T>::Block::Random(n + m, 5);
+  const Matrix product = A * start.topRows(n), before = start.bottomRows(m);
+  const auto expect = [&](const typename BlockRows<T>::Block& work, const Matrix& expected, const char* what) {
+    EXPECT_LE(double((work.bottomRows(m) - expected).cwiseAbs().maxCoeff()), 10 * tolerance::tile_product_f32) << what;
+  };
+  typename BlockRows<T>::Block work = start;
+  rows.run(work);
+  expect(work, before + product, "all");
+  for (const bool x_filled : {false, true}) {
+    for (const bool out_filled : {false, true}) {
+      std::vector<char> filled((n + m) / kTileStep, false);
+      filled[0] = x_filled;
+      filled[n / Index(kTileStep)] = out_filled;
+      work = start;
+      rows.run_sparse(work, filled);
+      expect(work, !x_filled ? before : out_filled ? Matrix(before + product) : product, "sparse");
+      EXPECT_EQ(bool(filled[n / Index(kTileStep)]), x_filled || out_filled);
+    }
+  }
 }
 
 TEST(PackedTile, ColumnsErrByHalfAStepOfTheirLargestNumber) {

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <random>
 #include <skinbem/kernels/kelvin_batch.hpp>
+#include <vector>
 
 #include "tolerances.hpp"
 
@@ -162,6 +164,79 @@ TEST_P(KelvinPanel, DipolesEqualTheScalarKernel) {
       expect_same(a[q], b[q], q < count ? (1u << kPanel) - 1 : 0);  // what is behind them stays
     }
   }
+}
+
+/// Rows of all components near the origin, and dipoles with every set of components some way off.
+template <class Real>
+struct DipoleScene {
+  static constexpr std::size_t kRows = 3 * kPanel, kDipoles = 14, kColumns = 24;
+  alignas(64) std::array<Real, kRows> x, y, z, component;
+  std::array<Real, kDipoles> dipoles[6];
+
+  DipoleScene() {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (auto* coordinate : {&x, &y, &z}) {
+      for (Real& value : *coordinate) value = static_cast<Real>(uniform(random));
+    }
+    for (std::size_t r = 0; r < kRows; ++r) component[r] = static_cast<Real>(random() % 3);
+    for (std::size_t q = 0; q < kDipoles; ++q) {
+      const Eigen::Vector3d n = Eigen::Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
+      for (std::size_t k = 0; k < 3; ++k) {
+        dipoles[k][q] = static_cast<Real>(3 + uniform(random));
+        dipoles[3 + k][q] = static_cast<Real>(n[Eigen::Index(k)]);
+      }
+    }
+  }
+  FieldRows<Real> rows(std::size_t count) const { return {count, x.data(), y.data(), z.data(), component.data()}; }
+  DipoleColumns<Real> columns() const {
+    return {{0, 2, 2, 2, 2, 2, 2, 2},
+            dipoles[0].data(),
+            dipoles[1].data(),
+            dipoles[2].data(),
+            {dipoles[3].data(), dipoles[4].data(), dipoles[5].data()}};
+  }
+  template <class Kernel>
+  std::vector<Real> matrix(const Kernel& kernel, std::size_t count) const {
+    alignas(64) std::array<Real, kRows * kColumns> out;
+    dipole_matrix(kernel, rows(count), columns(), out.data());
+    return {out.begin(), out.begin() + std::ptrdiff_t(count * kColumns)};
+  }
+};
+
+TEST_P(KelvinPanel, MatricesOfDipolesEqualTheScalarKernel) {
+  const auto expect_alike = [&](const auto& scene, double allowed) {
+    for (const std::size_t count : {kPanel, 2 * kPanel, 3 * kPanel}) {
+      const auto simd = scene.matrix(batch_, count), scalar = scene.matrix(scalar_, count);
+      const double largest = std::abs(
+          *std::max_element(scalar.begin(), scalar.end(), [](auto a, auto b) { return std::abs(a) < std::abs(b); }));
+      for (std::size_t k = 0; k < simd.size(); ++k) {
+        ASSERT_NEAR(double(simd[k]), double(scalar[k]), allowed * largest) << count << ' ' << k;
+      }
+    }
+  };
+  expect_alike(DipoleScene<double>(), tolerance::batch);
+  expect_alike(DipoleScene<float>(), tolerance::single_precision_batch);
+}
+
+TEST_P(KelvinPanel, MatricesOfDipolesHaveTheirColumnsInOrder) {
+  const DipoleScene<double> scene;
+  const std::vector<double> found = scene.matrix(batch_, kPanel);
+  std::size_t column = 0;
+  for (std::size_t q = 0; q < scene.kDipoles; ++q) {
+    const unsigned set = unsigned(q / 2 + 1);
+    const auto& d = scene.dipoles;
+    for (unsigned j = 0; j < 3; ++j) {
+      if (!(set >> j & 1)) continue;
+      const Eigen::Vector3d y(d[0][q], d[1][q], d[2][q]), n(d[3][q], d[4][q], d[5][q]);
+      for (std::size_t r = 0; r < kPanel; ++r) {
+        const auto T = scalar_.double_layer(y - Eigen::Vector3d(scene.x[r], scene.y[r], scene.z[r]), n);
+        ASSERT_NEAR(found[column * kPanel + r], T(Eigen::Index(scene.component[r]), j), 1e-14) << q << ' ' << j;
+      }
+      ++column;
+    }
+  }
+  EXPECT_EQ(column, scene.kColumns);
 }
 
 INSTANTIATE_TEST_SUITE_P(Poisson, KelvinPanel, ::testing::Values(-0.5, 0.0, 0.3, 0.45, 0.5));
