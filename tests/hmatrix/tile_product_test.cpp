@@ -107,22 +107,22 @@ TYPED_TEST(TileProduct, OfBlockRowsRunsStageAfterStage) {
 /// out += A x where out is filled, out = A x where it is not, and nothing where x is not.
 TYPED_TEST(TileProduct, OfBlockRowsAddsWhereThereIsSomethingToAddTo) {
   using T = TypeParam;
-  using Matrix = typename TestFixture::Matrix;
+  using Full = typename TestFixture::Matrix;
   constexpr Index n = 64, m = 80;
-  const Matrix A = Matrix::Random(m, n);
+  const Full A = Full::Random(m, n);
   BlockRows<T> rows;
   rows.begin_stage();
   rows.add({{n, m}, {{0, n}}, false, true});
   rows.allocate();
   for (Index k = 0; k < n; ++k) {
     for (Index r = 0; r < m; r += Index(kTile)) {
-      Matrix column = A.col(k).segment(r, std::min(Index(kTile), m - r));
+      Full column = A.col(k).segment(r, std::min(Index(kTile), m - r));
       rows.set_column(0, r, k, column.data());
     }
   }
   const typename BlockRows<T>::Block start = BlockRows<T>::Block::Random(n + m, 5);
-  const Matrix product = A * start.topRows(n), before = start.bottomRows(m);
-  const auto expect = [&](const typename BlockRows<T>::Block& work, const Matrix& expected, const char* what) {
+  const Full product = A * start.topRows(n), before = start.bottomRows(m);
+  const auto expect = [&](const typename BlockRows<T>::Block& work, const Full& expected, const char* what) {
     EXPECT_LE(double((work.bottomRows(m) - expected).cwiseAbs().maxCoeff()), 10 * tolerance::tile_product_f32) << what;
   };
   typename BlockRows<T>::Block work = start;
@@ -135,7 +135,7 @@ TYPED_TEST(TileProduct, OfBlockRowsAddsWhereThereIsSomethingToAddTo) {
       filled[n / Index(kTileStep)] = out_filled;
       work = start;
       rows.run_sparse(work, filled);
-      expect(work, !x_filled ? before : out_filled ? Matrix(before + product) : product, "sparse");
+      expect(work, !x_filled ? before : out_filled ? Full(before + product) : product, "sparse");
       EXPECT_EQ(bool(filled[n / Index(kTileStep)]), x_filled || out_filled);
     }
   }
