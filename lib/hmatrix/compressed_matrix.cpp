@@ -196,10 +196,16 @@ void CompressedMatrix<T>::keep_exact_rows(const TriangleMesh& mesh, const Colloc
 
 template <class T>
 VectorBlock CompressedMatrix<T>::to_tree(const Eigen::MatrixXd& vectors) const {
-  VectorBlock result = VectorBlock::Zero(rows_, vectors.cols());
-  for (std::int32_t place = 0; place < std::int32_t(tree_.order().size()); ++place) {
-    for (int i = 0; i < components; ++i) {
-      result.row(tree_row(place, i, components)) = vectors.row(Index(tree_.order()[place]) * components + i);
+  const std::vector<std::int32_t>& order = tree_.order();
+  const std::int32_t places = std::int32_t(order.size()), panel = std::int32_t(kPanel);
+  VectorBlock result(rows_, vectors.cols());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t first = 0; first < places; first += panel) {
+    if (first + panel > places) result.bottomRows(components * Index(kPanel)).setZero();
+    for (std::int32_t place = first; place < std::min(places, first + panel); ++place) {
+      for (int i = 0; i < components; ++i) {
+        result.row(tree_row(place, i, components)) = vectors.row(Index(order[place]) * components + i);
+      }
     }
   }
   return result;
@@ -207,10 +213,12 @@ VectorBlock CompressedMatrix<T>::to_tree(const Eigen::MatrixXd& vectors) const {
 
 template <class T>
 Eigen::MatrixXd CompressedMatrix<T>::from_tree(const VectorBlock& vectors) const {
-  Eigen::MatrixXd result(Index(tree_.order().size()) * components, vectors.cols());
-  for (std::int32_t place = 0; place < std::int32_t(tree_.order().size()); ++place) {
+  const std::vector<std::int32_t>& order = tree_.order();
+  Eigen::MatrixXd result(Index(order.size()) * components, vectors.cols());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t place = 0; place < std::int32_t(order.size()); ++place) {
     for (int i = 0; i < components; ++i) {
-      result.row(Index(tree_.order()[place]) * components + i) = vectors.row(tree_row(place, i, components));
+      result.row(Index(order[place]) * components + i) = vectors.row(tree_row(place, i, components));
     }
   }
   return result;

@@ -150,19 +150,17 @@ class BasisMaker {
     return result;
   }
   /// In the order of DipoleColumns: dipoles of which the same components are there stand together.
-  static ClusterBasis by_components(const ClusterBasis& columns) {
-    const std::vector<Dof>& dofs = columns.skeleton;
+  static ClusterBasis by_components(ClusterBasis columns) {
+    const std::vector<Dof> dofs = columns.skeleton;
     const PointList list(dofs);
     std::vector<unsigned> set(list.points.size());
     for (std::size_t k = 0; k < dofs.size(); ++k) set[list.of_dof[k]] |= 1u << dofs[k].component;
-    std::vector<Index> order(dofs.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto key = [&](Index k) { return std::tuple(set[list.of_dof[k]], dofs[k].point, dofs[k].component); };
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
-    ClusterBasis result;
-    for (const Index k : order) result.skeleton.push_back(dofs[k]);
-    result.interpolation = columns.interpolation(Eigen::all, order);
-    return result;
+    Eigen::VectorXi order = Eigen::VectorXi::LinSpaced(Index(dofs.size()), 0, int(dofs.size()) - 1);
+    const auto key = [&](int k) { return std::tuple(set[list.of_dof[k]], dofs[k].point, dofs[k].component); };
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+    for (std::size_t k = 0; k < dofs.size(); ++k) columns.skeleton[k] = dofs[order[Index(k)]];
+    columns.interpolation = columns.interpolation * Eigen::PermutationMatrix<Eigen::Dynamic>(order);  // in place
+    return columns;
   }
   /// From vertex by vertex to the order of a leaf's tiles.
   static Eigen::MatrixXd fill_up(const Cluster& leaf, const Eigen::MatrixXd& weights) {

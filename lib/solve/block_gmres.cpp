@@ -8,13 +8,37 @@
 #include <vector>
 
 #include <skinbem/base/lapack.hpp>
+#include <skinbem/base/row_chunks.hpp>
 
 namespace skinbem {
 namespace {
 
-constexpr Index chunk_rows = 2048;
+using detail::for_each_chunk;
 
-Index chunk_count(Index rows) { return (rows + chunk_rows - 1) / chunk_rows; }
+/// body(some rows of V, the first of them).
+template <class Body>
+void in_chunks(VectorBlock& V, const Body& body) {
+  for_each_chunk(V.rows(), [&](Index first, Index count) { body(V.middleRows(first, count), first); });
+}
+
+VectorBlock zeros(Index rows, Index columns) {
+  VectorBlock V(rows, columns);
+  in_chunks(V, [](auto part, Index) { part.setZero(); });
+  return V;
+}
+
+void scale_columns(VectorBlock& V, const Eigen::RowVectorXd& factors) {
+  in_chunks(V, [&](auto part, Index) { part.array().rowwise() *= factors.array(); });
+}
+
+/// W = W S for a square S.
+void multiply_from_right(VectorBlock& W, const RowMajorMatrix& S) {
+  in_chunks(W, [&](auto part, Index) {
+    RowMajorMatrix product = RowMajorMatrix::Zero(part.rows(), part.cols());
+    lapack::add_product(part.data(), S, part.rows(), product.data());
+    part = product;
+  });
+}
 
 /// W = Q R with orthonormal columns of Q, as many as W has independent directions (singular values above `negligible`,
 /// and above 1e-7 of the largest); W becomes Q. Singular vector QR: Stathopoulos and Wu, SIAM J. Sci. Comput. 23
@@ -29,9 +53,14 @@ Eigen::MatrixXd orthonormalise(VectorBlock& W, double negligible) {
   while (kept < n && eigen.eigenvalues()[n - 1 - kept] > std::max(negligible * negligible, noise)) ++kept;
   const Eigen::VectorXd sigma = eigen.eigenvalues().tail(kept).cwiseSqrt();
   const Eigen::MatrixXd vectors = eigen.eigenvectors().rightCols(kept);
-  VectorBlock Q = VectorBlock::Zero(W.rows(), kept);
-  add_product(W, vectors * sigma.cwiseInverse().asDiagonal(), Q);
-  W.swap(Q);
+  const RowMajorMatrix S = vectors * sigma.cwiseInverse().asDiagonal();
+  if (kept == n) {
+    multiply_from_right(W, S);
+  } else {
+    VectorBlock Q = zeros(W.rows(), kept);
+    add_product(W, S, Q);
+    W.swap(Q);
+  }
   return sigma.asDiagonal() * vectors.transpose();
 }
 
@@ -115,12 +144,13 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
     column.conservativeResize(width + W.cols(), Eigen::NoChange);
     column.bottomRows(W.cols()) = below;
     hessenberg.add(std::move(column));
-    V.push_back(W);
+    V.push_back(std::move(W));
+    W = {};
     residual = hessenberg.residuals().maxCoeff();
     report(progress, "solve", std::clamp(std::log(residual / largest) / std::log(options.tolerance / largest), 0., 1.));
   }
   const Eigen::MatrixXd y = hessenberg.solution();
-  VectorBlock sum = VectorBlock::Zero(V.front().rows(), y.cols());
+  VectorBlock sum = zeros(V.front().rows(), y.cols());
   for (Index k = 0, row = 0; row < y.rows(); row += V[k].cols(), ++k) {
     add_product(V[k], y.middleRows(row, V[k].cols()), sum);
   }
@@ -131,49 +161,45 @@ VectorBlock cycle(const BlockOperator& A, const BlockOperator& preconditioner, V
 }  // namespace
 
 Eigen::MatrixXd inner_products(const VectorBlock& V, const VectorBlock& W) {
-  const Index chunks = chunk_count(V.rows());
-  std::vector<RowMajorMatrix> parts(chunks);
-#pragma omp parallel for schedule(static) if (chunks > 1)
-  for (Index k = 0; k < chunks; ++k) {
-    const Index first = k * chunk_rows, rows = std::min(chunk_rows, V.rows() - first);
-    parts[k].resize(V.cols(), W.cols());
-    lapack::inner_product(V.data() + first * V.cols(), W.data() + first * W.cols(), rows, parts[k]);
-  }
+  std::vector<RowMajorMatrix> parts(detail::chunk_count(V.rows()));
+  for_each_chunk(V.rows(), [&](Index first, Index count) {
+    RowMajorMatrix& part = parts[first / detail::chunk_rows];
+    part.resize(V.cols(), W.cols());
+    lapack::inner_product(V.data() + first * V.cols(), W.data() + first * W.cols(), count, part);
+  });
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(V.cols(), W.cols());
   for (const RowMajorMatrix& part : parts) sum += part;
   return sum;
 }
 
 void add_product(const VectorBlock& V, const RowMajorMatrix& S, VectorBlock& W) {
-  const Index chunks = chunk_count(V.rows());
-#pragma omp parallel for schedule(static) if (chunks > 1)
-  for (Index k = 0; k < chunks; ++k) {
-    const Index first = k * chunk_rows, rows = std::min(chunk_rows, V.rows() - first);
-    lapack::add_product(V.data() + first * V.cols(), S, rows, W.data() + first * W.cols());
-  }
+  for_each_chunk(V.rows(), [&](Index first, Index count) {
+    lapack::add_product(V.data() + first * V.cols(), S, count, W.data() + first * W.cols());
+  });
 }
 
-VectorBlock block_gmres(const BlockOperator& A, const BlockOperator& preconditioner, const VectorBlock& G,
+VectorBlock block_gmres(const BlockOperator& A, const BlockOperator& preconditioner, VectorBlock G,
                         const GmresOptions& options, GmresSummary& summary, const Progress& progress) {
   const Eigen::RowVectorXd sizes =
       inner_products(G, G).diagonal().transpose().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
-  const VectorBlock g = G.array().rowwise() / sizes.array();
-  VectorBlock Y = VectorBlock::Zero(G.rows(), G.cols());
-  VectorBlock R = g, product;
+  scale_columns(G, sizes.cwiseInverse());
+  VectorBlock Y = zeros(G.rows(), G.cols()), R(G.rows(), G.cols());
+  in_chunks(R, [&](auto part, Index first) { part = G.middleRows(first, part.rows()); });
   summary = {0, 1};
   while (summary.iterations < options.most_iterations) {
-    const VectorBlock next = Y + cycle(A, preconditioner, R, options, summary, progress);
-    A(next, product);
-    VectorBlock left = g - product;
-    const double residual = std::sqrt(inner_products(left, left).diagonal().maxCoeff());
+    VectorBlock next = cycle(A, preconditioner, std::move(R), options, summary, progress);
+    in_chunks(next, [&](auto part, Index first) { part += Y.middleRows(first, part.rows()); });
+    A(next, R);
+    in_chunks(R, [&](auto part, Index first) { part = G.middleRows(first, part.rows()) - part; });
+    const double residual = std::sqrt(inner_products(R, R).diagonal().maxCoeff());
     if (!(residual < summary.residual)) break;  // rounding has the last word
     const bool stalls = residual > 0.3 * summary.residual;
-    Y = next;
-    R = std::move(left);
+    Y = std::move(next);
     summary.residual = residual;
     if (residual <= options.tolerance || stalls) break;
   }
-  return Y.array().rowwise() * sizes.array();
+  scale_columns(Y, sizes);
+  return Y;
 }
 
 }  // namespace skinbem

@@ -32,7 +32,7 @@ using BlockOperator = std::function<void(const VectorBlock& in, VectorBlock& out
 /// A and the preconditioner may round to single precision, the basis may not: the response is made of differences of
 /// solutions, and with a basis in single precision it erred by 2.5e-4 where this one errs by 4e-6 (leg of 2,000
 /// vertices).
-VectorBlock block_gmres(const BlockOperator& A, const BlockOperator& preconditioner, const VectorBlock& G,
+VectorBlock block_gmres(const BlockOperator& A, const BlockOperator& preconditioner, VectorBlock G,
                         const GmresOptions& options, GmresSummary& summary, const Progress& progress = {});
 
 /// V^T W, summed in an order that does not depend on the threads.

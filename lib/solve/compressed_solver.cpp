@@ -5,6 +5,7 @@
 #include <random>
 #include <sstream>
 
+#include <skinbem/base/row_chunks.hpp>
 #include <skinbem/solve/coarse_correction.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/schwarz.hpp>
@@ -83,8 +84,8 @@ class CompressedSolver final : public NeumannSolver {
 
   Eigen::MatrixXd solve_block(const Eigen::MatrixXd& G, GmresSummary& summary) const {
     VectorBlock g = H_.to_tree(G);
-    multiply_blocks(inverse_diagonal_, g);
-    return H_.from_tree(block_gmres(scaled_system(), preconditioner(), g, gmres_, summary, progress_));
+    multiply_blocks(inverse_diagonal_, g, g);
+    return H_.from_tree(block_gmres(scaled_system(), preconditioner(), std::move(g), gmres_, summary, progress_));
   }
 
   /// H + B B^T
@@ -99,26 +100,32 @@ class CompressedSolver final : public NeumannSolver {
   BlockOperator scaled_system() const {
     return [this, A = system()](const VectorBlock& in, VectorBlock& out) {
       A(in, out);
-      multiply_blocks(inverse_diagonal_, out);
+      multiply_blocks(inverse_diagonal_, out, out);
     };
   }
   BlockOperator preconditioner() const {
     return [this, rest = VectorBlock(), local = VectorBlock()](const VectorBlock& in, VectorBlock& out) mutable {
-      rest = in;
-      multiply_blocks(H_.diagonal(), rest);
+      rest.resize(in.rows(), in.cols());
+      multiply_blocks(H_.diagonal(), in, rest);
       coarse_.apply(rest, out);
       schwarz_.apply(rest, local);
-      out += local;
+      detail::for_each_chunk(out.rows(), [&](Index first, Index count) {
+        out.middleRows(first, count) += local.middleRows(first, count);
+      });
     };
   }
-  /// V = blocks V, a block for each place.
-  static void multiply_blocks(const std::vector<Mat3>& blocks, VectorBlock& V) {
+  /// out = blocks in, a block for each place; both may be the same. What fills up the last panel is zero.
+  static void multiply_blocks(const std::vector<Mat3>& blocks, const VectorBlock& in, VectorBlock& out) {
+    const Index places = Index(blocks.size()), step = Index(kPanel);  // between components
 #pragma omp parallel for schedule(static)
-    for (Index place = 0; place < Index(blocks.size()); ++place) {
-      const Index row = tree_row(place, 0, 3), step = Index(kPanel);  // between components
-      for (Index c = 0; c < V.cols(); ++c) {
-        const Vec3 product = blocks[place] * Vec3(V(row, c), V(row + step, c), V(row + 2 * step, c));
-        for (int i = 0; i < 3; ++i) V(row + i * step, c) = product[i];
+    for (Index first = 0; first < places; first += step) {
+      if (first + step > places) out.middleRows(3 * first, 3 * step) = in.middleRows(3 * first, 3 * step);
+      for (Index place = first; place < std::min(places, first + step); ++place) {
+        const Index row = tree_row(std::int32_t(place), 0, 3);
+        for (Index c = 0; c < in.cols(); ++c) {
+          const Vec3 product = blocks[place] * Vec3(in(row, c), in(row + step, c), in(row + 2 * step, c));
+          for (int i = 0; i < 3; ++i) out(row + i * step, c) = product[i];
+        }
       }
     }
   }
