@@ -45,18 +45,25 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
               leaf_of_place_.begin() + tree_.clusters()[leaf].end, leaf);
   }
   Stopwatch watch;
-  const PointKernel<Kelvin<double>> kernel(mesh, tree_, collocation.kernel());
   report(progress, "compress", 0);
-  const NestedBases bases =
-      make_nested_bases(mesh, tree_, partition_, collocation, kernel, {options.tolerance, options.samples},
-                        [&](double fraction) { report(progress, "compress", bases_share * fraction); });
-  plan(bases, kernel);
-  fill_bases(bases);
+  compress_far_field(mesh, collocation, options, progress);
   summary_.basis_seconds = watch.lap();
   fill_near(collocation, progress);
   set_diagonal();
   keep_exact_rows(mesh, collocation);
   summary_.near_seconds = watch.lap();
+}
+
+/// The bases in double are as large as a third of the near blocks, and gone before these are made.
+template <class T>
+void CompressedMatrix<T>::compress_far_field(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
+                                             const CompressionOptions& options, const Progress& progress) {
+  const PointKernel<Kelvin<double>> kernel(mesh, tree_, collocation.kernel());
+  const NestedBases bases =
+      make_nested_bases(mesh, tree_, partition_, collocation, kernel, {options.tolerance, options.samples},
+                        [&](double fraction) { report(progress, "compress", bases_share * fraction); });
+  plan(bases, kernel);
+  fill_bases(bases);
 }
 
 /// Lays out workspace and schedule: vectors in, coefficients of column skeletons from the leaves up, those of row

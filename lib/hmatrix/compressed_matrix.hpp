@@ -84,6 +84,9 @@ class CompressedMatrix {
   /// Degrees of freedom of a leaf, filled up to whole panels.
   static WorkRange dofs_of(const Cluster& leaf);
 
+  /// Bases and couplings.
+  void compress_far_field(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
+                          const CompressionOptions& options, const Progress& progress);
   // the layout
   void plan(const NestedBases& bases, const PointKernel<Kelvin<double>>& kernel);
   void plan_upwards(const std::vector<WorkRange>& columns);

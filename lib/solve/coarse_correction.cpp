@@ -64,7 +64,7 @@ CoarseCorrection::CoarseCorrection(const TriangleMesh& mesh, const CompressedMat
   std::vector<std::int32_t> places(H.tree().order().size());
   for (std::size_t place = 0; place < places.size(); ++place) places[H.tree().order()[place]] = std::int32_t(place);
   for (const auto& vertices : parts_of_skin(mesh, parts)) add_part(mesh, vertices, places);
-  AZ_.resize(H.rows(), width());
+  AZ_ = PackedTiles(static_cast<std::size_t>(H.rows()) / kTile, static_cast<std::size_t>(width()));
   Eigen::MatrixXd E(width(), width());
 #pragma omp parallel
   {
@@ -76,13 +76,20 @@ CoarseCorrection::CoarseCorrection(const TriangleMesh& mesh, const CompressedMat
       for (std::size_t r = 0; r < parts_[k].rows.size(); ++r) Z.row(parts_[k].rows[r]) = parts_[k].Z.row(Index(r));
       H.multiply_sparse(Z, AZ, work);
       add_product(B, inner_products(B, Z), AZ);
-      AZ_.middleCols<6>(6 * Index(k)) = AZ.cast<float>();
+      set_product(k, AZ);
       E.middleCols<6>(6 * Index(k)) = restrict_to_parts(AZ);
     }
   }
   E_.compute(E);
   if (!(E_.rcond() > 1e-14)) {
     throw Error(ErrorCode::numerical, "parts of the body move freely against each other; check the mesh");
+  }
+}
+
+void CoarseCorrection::set_product(std::size_t k, const VectorBlock& AZ) {
+  for (std::size_t tile = 0; tile < AZ_.size(); ++tile) {
+    Eigen::Matrix<float, kTile, 6> columns = AZ.middleRows<kTile>(Index(tile * kTile)).cast<float>();
+    for (Index c = 0; c < 6; ++c) AZ_.set_column(tile, 6 * k + std::size_t(c), columns.col(c).data());
   }
 }
 
@@ -125,17 +132,18 @@ void CoarseCorrection::prolong(const Eigen::MatrixXd& S, VectorBlock& V) const {
 }
 
 void CoarseCorrection::apply(VectorBlock& in, VectorBlock& out) const {
-  constexpr Index chunk = 1024;
   const Eigen::MatrixXd S = E_.solve(restrict_to_parts(in));
   out.setZero(in.rows(), in.cols());
   prolong(S, out);
   const SingleRows taken = S.cast<float>();
-#pragma omp parallel for schedule(static)
-  for (Index first = 0; first < in.rows(); first += chunk) {
-    const Index rows = std::min(chunk, in.rows() - first);
-    SingleRows product = SingleRows::Zero(rows, in.cols());
-    lapack::add_product(AZ_.row(first).data(), taken, rows, product.data());
-    in.middleRows(first, rows) -= product.cast<double>();
+#pragma omp parallel
+  {
+    SingleRows product(Index(kTile), in.cols());
+#pragma omp for schedule(static)
+    for (std::size_t tile = 0; tile < AZ_.size(); ++tile) {
+      AZ_.multiply(tile, taken.data(), static_cast<std::size_t>(in.cols()), product.data());
+      in.middleRows<kTile>(Index(tile * kTile)) -= product.cast<double>();
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include <skinbem/hmatrix/compressed_matrix.hpp>
+#include <skinbem/hmatrix/packed_tiles.hpp>
 #include <skinbem/solve/block_gmres.hpp>
 
 namespace skinbem {
@@ -38,6 +39,8 @@ class CoarseCorrection {
     VectorBlock Z;            ///< #rows by 6, orthonormal columns
   };
   Index width() const { return 6 * Index(parts_.size()); }
+  /// What A makes of the motions of part k, 6 columns.
+  void set_product(std::size_t k, const VectorBlock& AZ);
   void add_part(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
                 const std::vector<std::int32_t>& places);
   /// Z^T V and Z S; the latter into rows of parts only.
@@ -45,7 +48,7 @@ class CoarseCorrection {
   void prolong(const Eigen::MatrixXd& S, VectorBlock& V) const;
 
   std::vector<Part> parts_;
-  SingleRows AZ_;
+  PackedTiles AZ_;  ///< rows in the tree's order
   Eigen::PartialPivLU<Eigen::MatrixXd> E_;
 };
 

@@ -147,18 +147,18 @@ bool SchwarzPreconditioner::invert(const Eigen::MatrixXf& entries, const Cluster
   if (!first_rows_of_inverse(entries, own, rows)) return false;
   const Index panels = (cluster.size() + Index(kPanel) - 1) / Index(kPanel);
   leaf.first = tree_row(cluster.begin, 0, components);
-  leaf.tiles = static_cast<std::size_t>(panels);
   for (const std::int32_t place : places) {
     for (int i = 0; i < components; ++i) leaf.sources.push_back(tree_row(place, i, components));
   }
-  leaf.inverse.assign(leaf.tiles * kTile * leaf.sources.size(), 0.0f);
-  for (Index k = 0; k < n; ++k) {
-    for (Index place = 0; place < cluster.size(); ++place) {
-      for (int i = 0; i < components; ++i) {
-        const Index row = tree_row(place, i, components);
-        leaf.inverse[(row / Index(kTile) * n + k) * Index(kTile) + row % Index(kTile)] =
-            rows(k, components * place + i);
+  leaf.inverse = PackedTiles(static_cast<std::size_t>(panels), leaf.sources.size());
+  for (Index panel = 0; panel < panels; ++panel) {
+    const Index first = panel * Index(kPanel), count = std::min(Index(kPanel), cluster.size() - first);
+    for (Index k = 0; k < n; ++k) {
+      float column[kTile] = {};
+      for (Index p = 0; p < count; ++p) {
+        for (int i = 0; i < components; ++i) column[i * Index(kPanel) + p] = rows(k, components * (first + p) + i);
       }
+      leaf.inverse.set_column(static_cast<std::size_t>(panel), static_cast<std::size_t>(k), column);
     }
   }
   return true;
@@ -177,10 +177,8 @@ void SchwarzPreconditioner::apply(const VectorBlock& in, VectorBlock& out) const
       for (std::size_t s = 0; s < leaf.sources.size(); ++s) {
         gathered.row(Index(s)) = in.row(leaf.sources[s]).cast<float>();
       }
-      const RowRange<float> range{gathered.data(), leaf.sources.size()};
-      for (std::size_t tile = 0; tile < leaf.tiles; ++tile) {
-        multiply_tile(leaf.inverse.data() + tile * kTile * leaf.sources.size(), kTile, std::span(&range, 1), columns,
-                      result.data());
+      for (std::size_t tile = 0; tile < leaf.inverse.size(); ++tile) {
+        leaf.inverse.multiply(tile, gathered.data(), columns, result.data());
         out.middleRows(leaf.first + Index(tile * kTile), Index(kTile)) = result.cast<double>();
       }
     }
@@ -189,7 +187,7 @@ void SchwarzPreconditioner::apply(const VectorBlock& in, VectorBlock& out) const
 
 std::size_t SchwarzPreconditioner::bytes() const {
   std::size_t sum = 0;
-  for (const Leaf& leaf : leaves_) sum += leaf.inverse.size() * sizeof(float) + leaf.sources.size() * sizeof(Index);
+  for (const Leaf& leaf : leaves_) sum += leaf.inverse.bytes() + leaf.sources.size() * sizeof(Index);
   return sum;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <skinbem/hmatrix/compressed_matrix.hpp>
+#include <skinbem/hmatrix/packed_tiles.hpp>
 
 namespace skinbem {
 
@@ -25,9 +26,8 @@ class SchwarzPreconditioner {
  private:
   struct Leaf {
     Index first = 0;             ///< row of the tree's order
-    std::size_t tiles = 0;       ///< of its rows of the inverse
-    std::vector<Index> sources;  ///< rows that these are multiplied with
-    detail::AlignedVector<float> inverse;
+    std::vector<Index> sources;  ///< rows that its rows of the inverse are multiplied with
+    PackedTiles inverse;
   };
 
   /// False for a singular matrix.
