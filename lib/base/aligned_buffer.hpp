@@ -11,6 +11,9 @@
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace skinbem::detail {
 
@@ -66,6 +69,13 @@ class Uninitialised {
   std::size_t size_ = 0;
   std::unique_ptr<T, Free> data_;
 };
+
+/// Memory in small pieces that was freed goes back to the system, where the allocator is one that would keep it.
+inline void return_freed_memory() noexcept {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
 
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;

@@ -47,6 +47,7 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
   Stopwatch watch;
   report(progress, "compress", 0);
   compress_far_field(mesh, collocation, options, progress);
+  detail::return_freed_memory();
   summary_.basis_seconds = watch.lap();
   fill_near(collocation, progress);
   set_diagonal();
@@ -54,7 +55,7 @@ CompressedMatrix<T>::CompressedMatrix(const TriangleMesh& mesh, const Collocatio
   summary_.near_seconds = watch.lap();
 }
 
-/// The bases in double are as large as a third of the near blocks, and gone before these are made.
+/// The bases in double take a third of what the near blocks do, and are gone before these are made.
 template <class T>
 void CompressedMatrix<T>::compress_far_field(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation,
                                              const CompressionOptions& options, const Progress& progress) {

@@ -26,21 +26,19 @@ SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, dou
   const double n = static_cast<double>(mesh.vertex_count());
   const IterativeOptions options = IterativeOptions::for_tolerance(tolerance, mesh.vertex_count());
   const double digits = -std::log10(tolerance);
-  // measured on the leg of 10,000 vertices, one thread, 1e-2 to 1e-7: 2.6, 3.1, 3.7 (2e-4), 3.8 s in 16 bits, 6.0 in
-  // single, 10.9, 15.8, 17 in double precision; grows by a fifth of a power: iterations and levels (docs/scaling.md)
+  // measured on the leg of 10,000 vertices, one thread, 1e-2 to 1e-7: 2.7, 3.1, 3.7 (2e-4), 3.8 s in 16 bits, 6.2 in
+  // single, 10.7, 15.7, 18.6 in double precision; grows by a fifth of a power: iterations and levels (docs/scaling.md)
   const double for_numbers = options.compression.packed ? 1 : options.single ? 1.4 : 3;
   const double seconds_per_vertex = for_numbers * (2e-4 + 5e-5 * digits) * std::pow(n / 1e4, 0.2);
   const double blocks_of_the_basis = 4 * digits, columns = 18;
-  const double schwarz = 3 * n * 3 * 128 * 4;
+  const double schwarz = 3 * n * 3 * 128 * 2;
   const double vectors = 3 * n * 8 * columns * (blocks_of_the_basis + 8);
   const double rows = 3 * n * 8 * 3 * 16;  // of the sample
-  const double coarse = 3 * n * 4 * 6 * static_cast<double>(CoarseCorrection::parts_for(mesh.vertex_count()));  // A Z
-  // in double while they are made: of rows and columns, at the leaves and above
-  const double bases = 3 * n * 8 * 2 * 2 * predict_rank(options.compression.tolerance);
+  const double coarse = 3 * n * 2 * 6 * static_cast<double>(CoarseCorrection::parts_for(mesh.vertex_count()));  // A Z
   const double number_bytes = options.single ? 4 : 8;
   return {Solver::hmatrix, seconds_per_vertex * n / threads,
           predict_compressed_bytes(mesh, options.compression, static_cast<std::size_t>(number_bytes)) +
-              static_cast<std::size_t>(schwarz + vectors + rows + coarse + bases + 1e8)};
+              static_cast<std::size_t>(schwarz + vectors + rows + coarse + 1e8)};
 }
 
 std::string gigabytes(std::size_t bytes) {
