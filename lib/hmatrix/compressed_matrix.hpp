@@ -21,7 +21,7 @@ struct CompressionOptions {
   double eta = 1;
   /// Vertices of a cluster's far field that its bases are made from.
   Index samples = 128;
-  /// Blocks of clusters of some leaves' vertices are stored in 16 bits, where the others are in single precision: half
+  /// Near blocks and the bases of small clusters are stored in 16 bits, where the others are in single precision: half
   /// the memory. Their rounding errors differ from vertex to vertex and even out; those of larger clusters would not.
   bool packed = false;
 };
@@ -40,8 +40,8 @@ struct CompressionSummary {
 
 /// H (3N by 3N) with T = float or double numbers, as near blocks of neighbouring leaves, and for the far field nested
 /// bases (interpolative decomposition: Martinsson, Rokhlin, Tygert 2005; nested: Boerm 2010) with couplings that are
-/// values of the kernel between two skeletons: H ~ D + near + P S Q^T. Diagonal blocks D make H 1 = 0. Vectors are in
-/// the tree's order (tree_row), filled up to a whole panel.
+/// values of the kernel between two skeletons, computed in every product: H ~ D + near + P S Q^T. Diagonal blocks D
+/// make H 1 = 0. Vectors are in the tree's order (tree_row), filled up to a whole panel.
 template <class T>
 class CompressedMatrix {
  public:

@@ -12,9 +12,9 @@
 
 namespace skinbem {
 
-/// Coefficients of row skeletons from those of the column skeletons of far clusters. They are values of the kernel,
-/// which are computed anew in every product: they would take more memory than all else, and not much less time to read
-/// than to compute.
+/// Coefficients of row skeletons from those of the column skeletons of far clusters. Couplings are values of the
+/// kernel, which every product computes anew: stored, they would take as much memory as the near blocks, and as long to
+/// be filled as what an iteration to a usual tolerance saves (docs/hmatrix.md).
 template <class T>
 class Couplings {
  public:

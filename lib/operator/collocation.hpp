@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,7 @@
 namespace skinbem {
 namespace detail {
 struct RowPanel;
+class FarPatch;
 class GaussPoints;
 template <class Kernel, class Real>
 class ColumnBlock;
@@ -71,7 +73,8 @@ class Collocation {
   void double_layer_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
                           Eigen::Ref<Eigen::MatrixXd> out) const;
 
-  /// Columns of G for one density: components N by components, row block k is int U(x_k, .) density dS.
+  /// Columns of G for one density: components N by components, row block k is int U(x_k, .) density dS. Far from many
+  /// triangles these are replaced by fewer sources, to the same tolerance.
   Eigen::MatrixXd single_layer_columns(std::span<const VertexWeight> density) const;
 
  private:
@@ -87,6 +90,8 @@ class Collocation {
                                              std::span<const std::int32_t> slot_of) const;
   template <class Real>
   void fill(RowMajorMatrix& H, const Progress& progress, std::span<AssemblyCounts> counts) const;
+  template <class DensityOn>
+  std::optional<detail::FarPatch> far_patch(std::span<const std::int32_t> triangles, const DensityOn& density_on) const;
   template <class Real, class Store>
   void make_panels(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns, const Store& store) const;
   /// Returns how many points of the panel are near.

@@ -15,6 +15,7 @@
 
 #include <skinbem/operator/collocation.hpp>
 #include <skinbem/operator/column_block.hpp>
+#include <skinbem/operator/far_patch.hpp>
 #include <skinbem/operator/gauss_points.hpp>
 #include <skinbem/operator/morton_order.hpp>
 #include <skinbem/operator/panel_integral.hpp>
@@ -234,20 +235,54 @@ Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const Vertex
     value[d.vertex] += d.value;
   }
   const std::vector<std::int32_t> triangles = triangles_around(support, slots);
+  const auto density_on = [&](std::int32_t t) {
+    const auto& v = triangles_[t];
+    return Eigen::Vector3d(value[v[0]], value[v[1]], value[v[2]]);
+  };
+  const std::optional<detail::FarPatch> far = far_patch(triangles, density_on);
   Eigen::MatrixXd G(components * node_count(), components);
   for_each_panel<double>({}, "", [&](Index, const Panel& panel, ColumnBlock<double>& block) {
     block.prepare({}, 0);
-    detail::GaussPoints gauss;
-    for (const std::int32_t t : triangles) {
-      const auto& v = triangles_[t];
-      detail::add_single_layer_of(sources_[t], {value[v[0]], value[v[1]], value[v[2]]}, panel, integral_, gauss,
-                                  block.slot(0));
+    if (far && far->serves(panel)) {
+      add_single_layer(integral_.kernel(), panel.points, panel.mask(), far->points(), block.slot(0));
+    } else {
+      detail::GaussPoints gauss;
+      for (const std::int32_t t : triangles) {
+        detail::add_single_layer_of(sources_[t], density_on(t), panel, integral_, gauss, block.slot(0));
+      }
     }
     for (std::size_t p = 0; p < panel.count; ++p) {
       G.template block<components, components>(components * Index(panel.vertex[p]), 0) = block.entry(0, p) / scale_;
     }
   });
   return G;
+}
+
+/// The triangles with a density on each, from afar; nothing where they are too few for that to save time.
+template <class Kernel>
+template <class DensityOn>
+std::optional<detail::FarPatch> Collocation<Kernel>::far_patch(std::span<const std::int32_t> triangles,
+                                                               const DensityOn& density_on) const {
+  if (triangles.empty()) return {};
+  Eigen::AlignedBox3d box;
+  for (const std::int32_t t : triangles) {
+    for (const std::int32_t v : triangles_[t]) box.extend(vertices_[v]);
+  }
+  detail::FarPatch far(box, integral_.tolerance());
+  const double distance = (detail::FarPatch::separation - 1) * far.radius();
+  std::vector<const TriangleRule*> rules;
+  std::size_t points = 0;
+  for (const std::int32_t t : triangles) {
+    rules.push_back(integral_.single_layer_rules().rule(distance * distance / sources_[t].radius2));
+    if (!rules.back()) return {};
+    points += std::size_t(rules.back()->size());
+  }
+  if (points < 2 * far.size()) return {};
+  detail::GaussPoints gauss;
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    far.add(gauss.of(sources_[triangles[k]].geometry, *rules[k], density_on(triangles[k])));
+  }
+  return far;
 }
 
 }  // namespace skinbem

@@ -90,6 +90,7 @@ class ElementIntegral {
   const RuleLadder& double_layer_rules() const { return double_; }
   const RuleLadder& single_layer_rules() const { return single_; }
   const Kernel& kernel() const { return kernel_; }
+  double tolerance() const { return tolerance_; }
 
  private:
   /// Whether the closed form in long double is to be used where it rounds by `rounding` in double: it is accurate

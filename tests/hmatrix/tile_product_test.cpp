@@ -4,6 +4,7 @@
 #include <skinbem/base/aligned_buffer.hpp>
 #include <skinbem/base/types.hpp>
 #include <skinbem/hmatrix/block_rows.hpp>
+#include <skinbem/hmatrix/packed_tiles.hpp>
 
 #include "tolerances.hpp"
 
@@ -152,6 +153,26 @@ TEST(PackedTile, ColumnsErrByHalfAStepOfTheirLargestNumber) {
       EXPECT_LE(lost.cwiseAbs().maxCoeff(), 0.501f * scale);
       EXPECT_LE((numbers.cast<float>() * scale + lost - values).cwiseAbs().maxCoeff(), 1e-3f * scale);
     }
+  }
+}
+
+TEST(PackedTiles, MultiplyTileByTile) {
+  constexpr Index tiles = 3, width = 70, columns = 5;
+  const Eigen::MatrixXf A = Eigen::MatrixXf::Random(tiles * Index(kTile), width);
+  const TileProduct<float>::RowMajor rhs = TileProduct<float>::RowMajor::Random(width, columns);
+  PackedTiles packed(tiles, width);
+  for (Index tile = 0; tile < tiles; ++tile) {
+    for (Index k = 0; k < width; ++k) {
+      Eigen::VectorXf column = A.col(k).segment(tile * Index(kTile), Index(kTile));
+      packed.set_column(std::size_t(tile), std::size_t(k), column.data());
+    }
+  }
+  EXPECT_EQ(packed.bytes(), std::size_t(tiles * width) * (2 * kTile + 4));
+  for (Index tile = 0; tile < tiles; ++tile) {
+    TileProduct<float>::RowMajor out(Index(kTile), columns);
+    packed.multiply(std::size_t(tile), rhs.data(), columns, out.data());
+    const Eigen::MatrixXf expected = A.middleRows(tile * Index(kTile), Index(kTile)) * rhs;
+    EXPECT_LE((out - expected).cwiseAbs().maxCoeff(), tolerance::compressed_packed * width);
   }
 }
 
