@@ -30,11 +30,14 @@ template <class T>
 struct ShiftedRows {
   alignas(64) T numbers[4][kTile];
 
-  /// `from`: x, y, z and component, `stride` apart; `shift` leads from their centre to the other.
-  ShiftedRows(const T* from, std::size_t stride, std::size_t height, const Vec3& shift) {
+  /// `from`: x, y, z and component, `stride` apart. The centre is subtracted before numbers are rounded: its own
+  /// rounding would move all rows together, which a thin body sees.
+  ShiftedRows(const double* from, std::size_t stride, std::size_t height, const Vec3& centre) {
     for (int k = 0; k < 4; ++k) {
-      const T subtracted = k < 3 ? static_cast<T>(shift[k]) : T(0);
-      for (std::size_t r = 0; r < height; ++r) numbers[k][r] = from[std::size_t(k) * stride + r] - subtracted;
+      const double subtracted = k < 3 ? centre[k] : 0;
+      for (std::size_t r = 0; r < height; ++r) {
+        numbers[k][r] = static_cast<T>(from[std::size_t(k) * stride + r] - subtracted);
+      }
     }
   }
   FieldRows<T> rows(std::size_t height) const { return {height, numbers[0], numbers[1], numbers[2], numbers[3]}; }
@@ -54,14 +57,14 @@ template <class T>
 auto Couplings<T>::skeleton_of_rows(const PointKernel<Kelvin<double>>& kernel, const std::vector<Dof>& dofs)
     -> RowSkeleton {
   if (dofs.empty()) return {};
-  RowSkeleton result{Vec3::Zero(), static_cast<std::size_t>(round_up(Index(dofs.size()), kTileStep)), {}};
-  for (const Dof& dof : dofs) result.centre += kernel.vertex(dof.point) / double(dofs.size());
+  RowSkeleton result{static_cast<std::size_t>(round_up(Index(dofs.size()), kTileStep)), {}};
   result.numbers.resize(4 * result.count);
   for (std::size_t r = 0; r < result.count; ++r) {
     const Dof& dof = dofs[std::min(r, dofs.size() - 1)];
-    const Vec3 place = kernel.vertex(dof.point) - result.centre;
-    for (int k = 0; k < 3; ++k) result.numbers[std::size_t(k) * result.count + r] = static_cast<T>(place[k]);
-    result.numbers[3 * result.count + r] = static_cast<T>(dof.component);
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.numbers[k * result.count + r] = kernel.vertex(dof.point)[Index(k)];
+    }
+    result.numbers[3 * result.count + r] = dof.component;
   }
   return result;
 }
@@ -114,7 +117,7 @@ bool Couplings<T>::multiply_cluster(std::size_t cluster, Block& work, const Want
     for (const std::int32_t partner : far) {
       if (!is_wanted(partner)) continue;
       const ColumnSkeleton& skeleton = columns_[partner];
-      const ShiftedRows<T> shifted(rows.numbers.data() + first, rows.count, height, skeleton.centre - rows.centre);
+      const ShiftedRows<T> shifted(rows.numbers.data() + first, rows.count, height, skeleton.centre);
       for (const Slice& slice : skeleton.slices) {
         dipole_matrix(kernel_, shifted.rows(height), skeleton.columns_of(slice), slice_numbers);
         const T* rhs = work.row(column_range_[partner].first + Index(slice.first_column)).data();
@@ -153,10 +156,10 @@ std::size_t Couplings<T>::numbers() const {
 
 template <class T>
 std::size_t Couplings<T>::bytes() const {
-  std::size_t numbers = 0;
-  for (const RowSkeleton& rows : rows_) numbers += rows.numbers.size();
-  for (const ColumnSkeleton& columns : columns_) numbers += columns.numbers.size();
-  return numbers * sizeof(T);
+  std::size_t sum = 0;
+  for (const RowSkeleton& rows : rows_) sum += rows.numbers.size() * sizeof(double);
+  for (const ColumnSkeleton& columns : columns_) sum += columns.numbers.size() * sizeof(T);
+  return sum;
 }
 
 template class Couplings<float>;

@@ -38,11 +38,10 @@ class Couplings {
   std::size_t bytes() const;
 
  private:
-  /// Of a cluster's rows, relative to its centre: x, y, z and component, each filled up to a multiple of kTileStep.
+  /// Of a cluster's rows: x, y, z and component, each filled up to a multiple of kTileStep.
   struct RowSkeleton {
-    Vec3 centre;
     std::size_t count = 0;
-    detail::AlignedVector<T> numbers;
+    std::vector<double> numbers;
   };
   /// Consecutive columns of a skeleton, at most kDepth.
   struct Slice {
