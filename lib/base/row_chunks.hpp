@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Work on long blocks of vectors by chunks of rows, in parallel. Memory that is written this way for the first time
-/// gets its pages from all threads at once: for what is read only some times that is half of the cost.
+/// gets its pages from all threads at once.
 #pragma once
 
 #include <algorithm>

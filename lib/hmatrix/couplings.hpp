@@ -13,8 +13,8 @@
 namespace skinbem {
 
 /// Coefficients of row skeletons from those of the column skeletons of far clusters. Couplings are values of the
-/// kernel, which every product computes anew: stored, they would take as much memory as the near blocks, and as long to
-/// be filled as what an iteration to a usual tolerance saves (docs/hmatrix.md).
+/// kernel, which every product computes anew. Stored, they would take as much memory as the near blocks, and filling
+/// them as long as the products of a solve would then save (docs/hmatrix.md).
 template <class T>
 class Couplings {
  public:

@@ -22,7 +22,7 @@ class FarPatch {
  public:
   static constexpr double separation = 3;
 
-  /// Of the error, relative to the largest value of the kernel in the box.
+  /// `tolerance` is for the error of a source's field, relative to the largest value of the kernel in the box.
   FarPatch(const Eigen::AlignedBox3d& box, double tolerance)
       : centre_(box.center()), radius_(box.diagonal().norm() / 2) {
     constexpr double constant = 4;
