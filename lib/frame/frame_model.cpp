@@ -95,6 +95,7 @@ void FrameModel::packed_weights(const float* q, float* weights) const noexcept {
   if (coordinates_.vertices == 0) return;
   detail::FrameFactors frame{};
   frame.weights = q;
+  frame.weight_limit = detail::weight_limit(q, static_cast<std::size_t>(3 * landmark_count()));
   detail::repeat_rigid({}, Vec3::Zero(), frame);
   const detail::FrameTarget target{weights};
   const detail::PanelMatrix coordinates = coordinates_.matrix();
@@ -111,8 +112,8 @@ FrameState::FrameState(const FrameModel& model)
     : model_(&model),
       motion_(BodyMotion::at_rest(model.landmark_count())),
       candidate_(motion_),
-      q_(static_cast<std::size_t>(motion_.weights.size()), 0.0F),
-      weights_(model.weight_count(), 0.0F) {
+      q_(detail::make_weights(static_cast<std::size_t>(motion_.weights.size()))),
+      weights_(detail::make_weights(model.weight_count())) {
   repeat_rigid();
 }
 
@@ -139,8 +140,9 @@ bool FrameState::accept_candidate() noexcept {
     return false;
   }
   std::swap(motion_, candidate_);
-  for (std::size_t k = 0; k < q_.size(); ++k) q_[k] = static_cast<float>(motion_.weights[Index(k)]);
+  for (Index k = 0; k < motion_.weights.size(); ++k) q_[std::size_t(k)] = static_cast<float>(motion_.weights[k]);
   model_->packed_weights(q_.data(), weights_.data());
+  factors_.weight_limit = detail::weight_limit(weights_.data(), model_->weight_count());
   repeat_rigid();
   return true;
 }

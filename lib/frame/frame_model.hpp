@@ -146,7 +146,7 @@ class FrameState {
   BodyMotion candidate_;
   detail::AlignedVector<float> q_;        ///< in single precision
   detail::AlignedVector<float> weights_;  ///< of the packed columns
-  detail::FrameFactors factors_;          ///< of motion_.rigid
+  detail::FrameFactors factors_;          ///< of motion_; but for the weights themselves
 };
 
 /// Many frames, or many characters, of one model as a matrix product: R is read once for all of them. Frame f goes to

@@ -10,7 +10,7 @@ namespace skinbem::detail {
 namespace {
 
 constexpr auto kWidth = static_cast<Index>(kPanelWidth);
-constexpr double kLargestInt = 32766;  // one less than int16 has: the fraction of a lower half may round away from zero
+constexpr int kLargestInt = 32767;
 
 std::size_t panel_count(const Points& rest) {
   return (static_cast<std::size_t>(rest.rows()) + kPanelWidth - 1) / kPanelWidth;
@@ -39,20 +39,25 @@ Eigen::MatrixXd block_norms(const Eigen::MatrixXd& error) {
   return norms;
 }
 
-void append_entries(const std::vector<QuantisedEntry>& entries, AlignedVector<std::byte>& data) {
-  const std::size_t begin = data.size();
-  const std::size_t list = entry_list_bytes(entries.size());
-  data.resize(begin + list + entries.size() * kQuantisedColumnBytes);
-  std::byte* which = data.data() + begin;
-  std::byte* scale = which + entries.size() * sizeof(std::uint32_t);
-  std::byte* numbers = which + list;
-  for (const QuantisedEntry& entry : entries) {
-    std::memcpy(which, &entry.column, sizeof(entry.column));
-    std::memcpy(scale, &entry.scale, sizeof(entry.scale));
-    std::memcpy(numbers, entry.words.data(), kQuantisedColumnBytes);
-    which += sizeof(entry.column);
-    scale += sizeof(entry.scale);
-    numbers += kQuantisedColumnBytes;
+/// As many as there are columns in order, or whole lines of them.
+std::uint32_t adjacent_entries(const std::vector<QuantisedEntry>& entries) {
+  std::size_t count = 1;
+  while (count < entries.size() && entries[count].column == entries[count - 1].column + 1) ++count;
+  return static_cast<std::uint32_t>(count >= entries.size() ? entries.size() : count / 16 * 16);
+}
+
+void append_entries(const std::vector<QuantisedEntry>& entries, const PanelPlace& place,
+                    AlignedVector<std::byte>& data) {
+  const std::size_t begin = data.size(), list = entry_list_bytes(place.entries, place.adjacent);
+  data.resize(begin + list + (entries.size() + 1) / 2 * kColumnPairBytes);  // zeros
+  auto* scale = reinterpret_cast<float*>(data.data() + begin);
+  auto* which = reinterpret_cast<std::uint32_t*>(scale + padded_entries(entries.size()));
+  auto* numbers = reinterpret_cast<std::int16_t*>(data.data() + begin + list);
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    scale[e] = entries[e].scale / place.scale;
+    if (e >= place.adjacent) which[e - place.adjacent] = entries[e].column;
+    std::int16_t* pair = numbers + e / 2 * (2 * kColumnNumbers) + e % 2;
+    for (std::size_t i = 0; i < kColumnNumbers; ++i) pair[2 * i] = entries[e].numbers[i];
   }
 }
 
@@ -69,22 +74,14 @@ Eigen::MatrixXd panel_of(const Eigen::MatrixXd& matrix, std::size_t p) {
 }
 
 QuantisedEntry quantise(std::uint32_t column, Eigen::Ref<Eigen::VectorXd> remainder) {
-  QuantisedEntry entry{column, static_cast<float>(std::ldexp(remainder.cwiseAbs().maxCoeff() / kLargestInt, -16))};
+  QuantisedEntry entry{column, static_cast<float>(remainder.cwiseAbs().maxCoeff() / kLargestInt)};
   if (!(entry.scale >= std::numeric_limits<float>::min())) entry.scale = 0;
   if (entry.scale == 0) return entry;
-  const double unit = std::ldexp(double{entry.scale}, 16);
-  for (Index c = 0; c < 3; ++c) {
-    for (Index i = 0; i < kWidth / 2; ++i) {
-      double& lower = remainder(slot(i, c));
-      double& upper = remainder(slot(i + kWidth / 2, c));
-      const auto low = static_cast<std::int32_t>(std::lround(lower / unit));
-      const double fraction = std::ldexp(static_cast<double>(low & 0xffff), -16);
-      const auto high = static_cast<std::int32_t>(std::lround(upper / unit - fraction));
-      entry.words[static_cast<std::size_t>(c * kWidth / 2 + i)] = static_cast<std::int32_t>(
-          static_cast<std::uint32_t>(high) << 16 | (static_cast<std::uint32_t>(low) & 0xffffU));
-      lower -= unit * low;
-      upper -= unit * (high + fraction);
-    }
+  const double unit = entry.scale;
+  for (Index i = 0; i < remainder.size(); ++i) {
+    const long number = std::clamp(std::lround(remainder[i] / unit), -long{kLargestInt}, long{kLargestInt});
+    entry.numbers[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(number);
+    remainder[i] -= unit * static_cast<double>(number);
   }
   return entry;
 }
@@ -113,9 +110,13 @@ std::vector<QuantisedEntry> quantise_panel(Eigen::MatrixXd& panel, std::size_t f
 double error_factor_of(const Eigen::MatrixXd& error) { return block_norms(error).rowwise().sum().maxCoeff(); }
 
 void append_panel(const Points& rest, std::size_t p, const std::vector<QuantisedEntry>& entries, PackedPanels& packed) {
-  packed.places.push_back({packed.data.size(), entries.size()});
+  float largest = std::numeric_limits<float>::min();
+  for (const QuantisedEntry& entry : entries) largest = std::max(largest, entry.scale);
+  const float scale = std::ldexp(1.0F, std::ilogb(largest) + 1);
+  packed.places.push_back({packed.data.size(), entries.size(), adjacent_entries(entries),
+                           entries.empty() ? 0 : entries.front().column, scale});
   append_rest(rest, p, packed.data);
-  append_entries(entries, packed.data);
+  append_entries(entries, packed.places.back(), packed.data);
 }
 
 PackedPanels pack_float32(const Points& rest, const Eigen::MatrixXd& response) {

@@ -28,8 +28,8 @@ struct PackedPanels {
 /// Part of a column of a panel in int16.
 struct QuantisedEntry {
   std::uint32_t column = 0;
-  float scale = 0;  ///< times 2^-16
-  std::array<std::int32_t, kColumnNumbers / 2> words = {};
+  float scale = 0;
+  std::array<std::int16_t, kColumnNumbers> numbers = {};
 };
 
 /// The best entry for `remainder`, 96 numbers of a panel's column, which become what is left.

@@ -10,6 +10,9 @@
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_RVV | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #endif
+#ifndef HWY_WANT_AVX3_DL
+#define HWY_WANT_AVX3_DL  // has vpdpwssd
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "skinbem/frame/panel_product.cpp"
 #include <hwy/foreach_target.h>
@@ -26,8 +29,8 @@ using Tag = hn::CappedTag<float, kHalfPanel>;
 using Vector = hn::Vec<Tag>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
-/// The shape of the work: kVectors vectors of vertices, the first half of them in the first half of the panel, the
-/// others 16 vertices on; kFrames frames at once. There is a sum for each frame, component and vector.
+/// The shape of the work: kVectors vectors of adjacent vertices, kFrames frames at once. There is a sum for each frame,
+/// component and vector.
 ///
 /// All loops over sums are expanded from index sequences: compilers keep an array in registers only where every index
 /// is a constant from the outset.
@@ -36,58 +39,13 @@ struct Block {
   static constexpr std::size_t kVectors = kVectors_;
   static constexpr std::size_t kFrames = kFrames_;
   static constexpr std::size_t kSums = 3 * kVectors * kFrames;
-  static constexpr std::size_t kVertices = kVectors / 2 * kLanes;  // in each half of the panel
+  static constexpr std::size_t kVertices = kVectors * kLanes;
 
   static constexpr std::size_t frame(std::size_t sum) { return sum / (3 * kVectors); }
-  static constexpr std::size_t component(std::size_t sum) { return sum / kVectors % 3; }
-  static constexpr std::size_t vector(std::size_t sum) { return sum % kVectors; }
   static constexpr std::size_t sum(std::size_t f, std::size_t c, std::size_t v) { return (f * 3 + c) * kVectors + v; }
-  /// First vertex of a vector, relative to that of the block.
-  static constexpr std::size_t begin(std::size_t v) {
-    return v < kVectors / 2 ? v * kLanes : kHalfPanel + (v - kVectors / 2) * kLanes;
-  }
-};
-
-/// Numbers of a float column, or rest positions, for sum i.
-template <class B>
-HWY_INLINE Vector numbers(const float* HWY_RESTRICT column, std::size_t i) {
-  return hn::Load(Tag(), column + B::component(i) * kPanelWidth + B::begin(B::vector(i)));
-}
-
-/// Numbers of a quantised column, times 2^16: a word is the number of its upper half as it is, that of its lower half
-/// after a shift.
-template <class B>
-HWY_INLINE Vector numbers(const std::int32_t* HWY_RESTRICT column, std::size_t i) {
-  const std::size_t v = B::vector(i);
-  const std::size_t place = v % (B::kVectors / 2) * kLanes;
-  const auto word = hn::Load(hn::RebindToSigned<Tag>(), column + B::component(i) * kHalfPanel + place);
-  return hn::ConvertTo(Tag(), v < B::kVectors / 2 ? hn::ShiftLeft<16>(word) : word);
-}
-
-/// What a panel's columns are: floats in order, or words with a list of which and how large.
-struct FloatColumns {
-  static constexpr std::size_t kStep = kColumnNumbers;
-  const float* column;
-
-  FloatColumns(const std::byte* panel, std::size_t) : column(reinterpret_cast<const float*>(panel + kRestBytes)) {}
-  float weight(const FrameFactors& frame, std::size_t entry) const { return frame.weights[entry]; }
-};
-
-struct QuantisedColumns {
-  static constexpr std::size_t kStep = kColumnNumbers / 2;
-  const std::uint32_t* which;
-  const float* scale;
-  const std::int32_t* column;
-
-  QuantisedColumns(const std::byte* panel, std::size_t entries)
-      : which(reinterpret_cast<const std::uint32_t*>(panel + kRestBytes)),
-        scale(reinterpret_cast<const float*>(which + entries)),
-        column(reinterpret_cast<const std::int32_t*>(panel + kRestBytes + entry_list_bytes(entries))) {
-    // read beside the columns later on, the list would interrupt their stream, line by line
-    for (std::size_t line = 0; line < entry_list_bytes(entries); line += 64) hwy::Prefetch(panel + kRestBytes + line);
-  }
-  float weight(const FrameFactors& frame, std::size_t entry) const {
-    return scale[entry] * frame.weights[which[entry]];
+  /// Where the numbers of a sum are in a column of the panel, relative to the first of the block.
+  static constexpr std::size_t place(std::size_t sum) {
+    return sum / kVectors % 3 * kPanelWidth + sum % kVectors * kLanes;
   }
 };
 
@@ -152,80 +110,218 @@ HWY_INLINE void move_and_store(Vector x, Vector y, Vector z, const Motion& motio
   store_apart(packed, target, vertex, vertices);
 }
 
-/// The part of a panel that begins `shift` vertices into it.
-template <class B, class Columns, class MotionOf, std::size_t... kSum, std::size_t... kFrame, std::size_t... kPosition>
-HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std::size_t shift,
-                               const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets,
-                               std::index_sequence<kSum...>, std::index_sequence<kFrame...>,
-                               std::index_sequence<kPosition...>) {
-  const std::byte* data = matrix.data + matrix.places[panel].offset;
-  const std::size_t entries = matrix.places[panel].entries;
-  const Columns columns(data, entries);
-  const auto* column = columns.column + shift;
-  Vector sum[] = {hn::Mul(hn::Set(Tag(), frames[B::frame(kSum)].rest),
-                          numbers<B>(reinterpret_cast<const float*>(data) + shift, kSum))...};
-  for (std::size_t k = 0; k < entries; ++k, column += Columns::kStep) {
-    const Vector weight[] = {hn::Set(Tag(), columns.weight(frames[kFrame], k))...};
-    ((sum[kSum] = hn::MulAdd(numbers<B>(column, kSum), weight[B::frame(kSum)], sum[kSum])), ...);
-  }
-  const std::size_t first = panel * kPanelWidth + shift;
+/// The sums of a block, whose first vertex is `vertex`, as positions.
+template <class B, class MotionOf, std::size_t... kPosition>
+HWY_INLINE void move_and_store_block(const Vector (&sum)[B::kSums], const MotionOf& motion_of,
+                                     const FrameTarget* targets, std::size_t vertex, std::size_t vertices,
+                                     std::index_sequence<kPosition...>) {
   (move_and_store(sum[B::sum(kPosition / B::kVectors, 0, kPosition % B::kVectors)],
                   sum[B::sum(kPosition / B::kVectors, 1, kPosition % B::kVectors)],
                   sum[B::sum(kPosition / B::kVectors, 2, kPosition % B::kVectors)], motion_of(kPosition / B::kVectors),
-                  targets[kPosition / B::kVectors], first + B::begin(kPosition % B::kVectors), matrix.vertices),
+                  targets[kPosition / B::kVectors], vertex + kPosition % B::kVectors * kLanes, vertices),
    ...);
 }
 
-template <class B, class Columns, class MotionOf>
-HWY_INLINE void evaluate_panel(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
-                               const MotionOf& motion_of, const FrameTarget* targets) {
-  for (std::size_t shift = 0; shift < kHalfPanel; shift += B::kVertices) {
-    evaluate_block<B, Columns>(matrix, panel, shift, frames, motion_of, targets, std::make_index_sequence<B::kSums>(),
-                               std::make_index_sequence<B::kFrames>(),
-                               std::make_index_sequence<B::kFrames * B::kVectors>());
+/// Panels in single precision.
+struct FloatPanels {
+  // As many sums as registers allow: enough to hide the latency of the multiply-add, and in a batch each number of R
+  // that is loaded serves several frames.
+  using SingleBlock = Block<std::min<std::size_t>(4, kPanelWidth / kLanes), 1>;
+  using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
+
+  template <class B, class MotionOf>
+  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
+                                  const MotionOf& motion_of, const FrameTarget* targets) {
+    for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
+      evaluate_block<B>(matrix, panel, shift, frames, motion_of, targets, std::make_index_sequence<B::kSums>(),
+                        std::make_index_sequence<B::kFrames>());
+    }
   }
+
+ private:
+  template <class B, class MotionOf, std::size_t... kSum, std::size_t... kFrame>
+  static HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std::size_t shift,
+                                        const FrameFactors* frames, const MotionOf& motion_of,
+                                        const FrameTarget* targets, std::index_sequence<kSum...>,
+                                        std::index_sequence<kFrame...>) {
+    const float* rest = reinterpret_cast<const float*>(matrix.data + matrix.places[panel].offset) + shift;
+    Vector sum[] = {hn::Mul(hn::Set(Tag(), frames[B::frame(kSum)].rest), hn::Load(Tag(), rest + B::place(kSum)))...};
+    const float* column = rest;
+    for (std::size_t k = 0; k < matrix.places[panel].entries; ++k) {
+      column += kColumnNumbers;
+      const Vector weight[] = {hn::Set(Tag(), frames[kFrame].weights[k])...};
+      ((sum[kSum] = hn::MulAdd(hn::Load(Tag(), column + B::place(kSum)), weight[B::frame(kSum)], sum[kSum])), ...);
+    }
+    move_and_store_block<B>(sum, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,
+                            std::make_index_sequence<B::kFrames * B::kVectors>());
+  }
+};
+
+using IntTag = hn::RebindToSigned<Tag>;
+using IntVector = hn::Vec<IntTag>;
+
+/// In each lane: sum + lower half times lower half + upper half times upper half.
+HWY_INLINE IntVector add_pair_product(IntVector words, IntVector weights, IntVector sum) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL
+  asm("vpdpwssd %2, %1, %0" : "+v"(sum.raw) : "v"(words.raw), "v"(weights.raw));
+  return sum;
+#elif HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+  const hn::RepartitionToNarrow<IntTag> pairs;
+  IntVector unused = hn::Zero(IntTag());
+  return hn::ReorderWidenMulAccumulate(IntTag(), hn::BitCast(pairs, words), hn::BitCast(pairs, weights), sum, unused);
+#else
+  const auto lower = [](IntVector v) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
+  sum = hn::Add(sum, hn::Mul(lower(words), lower(weights)));
+  return hn::Add(sum, hn::Mul(hn::ShiftRight<16>(words), hn::ShiftRight<16>(weights)));
+#endif
 }
 
-// As many sums as registers allow: enough to hide the latency of the multiply-add, and in a batch each number of R that
-// is loaded serves several frames.
-using SingleBlock = Block<std::min<std::size_t>(4, kPanelWidth / kLanes), 1>;
-using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
+/// Panels in 16 bits. Weights, relative to the largest that may be, are integers too, of two parts with 11 bits each:
+/// sums of 32 entries are exact in 32 bits.
+struct QuantisedPanels {
+  // Two integers in registers for every sum, one of each part.
+  using SingleBlock = Block<(kLanes >= 16 ? 2 : 1), 1>;
+  using BatchBlock = Block<(kLanes >= 16 ? 2 : 1), 2>;
+
+  template <class B, class MotionOf>
+  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
+                                  const MotionOf& motion_of, const FrameTarget* targets) {
+    const PanelPlace& place = matrix.places[panel];
+    const auto* rest = reinterpret_cast<const float*>(matrix.data + place.offset);
+    const float* scale = rest + kColumnNumbers;
+    const auto* words = reinterpret_cast<const std::int32_t*>(matrix.data + place.offset + kRestBytes +
+                                                              entry_list_bytes(place.entries, place.adjacent));
+    HWY_ALIGN float sums[B::kFrames][kColumnNumbers];
+    float unit[B::kFrames];
+    for (std::size_t f = 0; f < B::kFrames; ++f) {
+      unit[f] = place.scale * frames[f].weight_limit / (kHigh * kHigh);
+      for (std::size_t i = 0; i < kColumnNumbers; i += kLanes) {
+        hn::Store(hn::Mul(hn::Set(Tag(), frames[f].rest), hn::Load(Tag(), rest + i)), Tag(), sums[f] + i);
+      }
+    }
+    for (std::size_t k = 0; k < place.entries; k += kGroup) {
+      const std::size_t pairs = (std::min(kGroup, place.entries - k) + 1) / 2;
+      SplitWeights weights[B::kFrames];
+      for (std::size_t f = 0; f < B::kFrames; ++f) split(place, scale, k, frames[f], weights[f]);
+      for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
+        add_group<B>(words + shift, pairs, weights, unit, sums[0] + shift, std::make_index_sequence<B::kSums>(),
+                     std::make_index_sequence<B::kFrames>());
+      }
+      words += pairs * kColumnNumbers;
+    }
+    for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
+      store_block<B>(sums[0] + shift, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,
+                     std::make_index_sequence<B::kSums>());
+    }
+  }
+
+ private:
+  static constexpr std::size_t kGroup = 32;
+  static constexpr int kPartBits = 11;
+  static constexpr float kHigh = 1 << kPartBits;
+
+  /// Of a group of entries: a weight is high kHigh + low.
+  struct SplitWeights {
+    HWY_ALIGN std::int16_t high[kGroup];
+    HWY_ALIGN std::int16_t low[kGroup];
+  };
+
+  /// `entry` is the first of a group.
+  static HWY_INLINE void split(const PanelPlace& place, const float* scale, std::size_t entry,
+                               const FrameFactors& frame, SplitWeights& result) {
+    const auto* which = reinterpret_cast<const std::int32_t*>(scale + padded_entries(place.entries));
+    const Vector steps = hn::Set(Tag(), kHigh * kHigh / frame.weight_limit);
+    const IntVector half = hn::Set(IntTag(), 1 << (kPartBits - 1));
+    const hn::Rebind<std::int16_t, Tag> parts;
+    for (std::size_t k = 0; k < kGroup && entry + k < place.entries; k += kLanes) {
+      const std::size_t first = entry + k;
+      const Vector weights =
+          first < place.adjacent
+              ? hn::LoadU(Tag(), frame.weights + place.column + first)
+              : hn::GatherIndex(Tag(), frame.weights, hn::Load(IntTag(), which + first - place.adjacent));
+      const IntVector weight = hn::NearestInt(hn::Mul(hn::Mul(hn::Load(Tag(), scale + first), steps), weights));
+      const IntVector high = hn::ShiftRight<kPartBits>(hn::Add(weight, half));
+      hn::Store(hn::DemoteTo(parts, high), parts, result.high + k);
+      hn::Store(hn::DemoteTo(parts, hn::Sub(weight, hn::ShiftLeft<kPartBits>(high))), parts, result.low + k);
+    }
+  }
+  /// The parts of two entries in every lane.
+  static HWY_INLINE IntVector pair(const std::int16_t* parts) {
+    std::int32_t word;
+    std::memcpy(&word, parts, sizeof(word));
+    return hn::Set(IntTag(), word);
+  }
+
+  /// Adds to the sums of a block, of which those of the next frame are kColumnNumbers further.
+  template <class B, std::size_t... kSum, std::size_t... kFrame>
+  static HWY_INLINE void add_group(const std::int32_t* words, std::size_t pairs, const SplitWeights* weights,
+                                   const float* unit, float* sums, std::index_sequence<kSum...>,
+                                   std::index_sequence<kFrame...>) {
+    IntVector high[] = {(static_cast<void>(kSum), hn::Zero(IntTag()))...};
+    IntVector low[] = {(static_cast<void>(kSum), hn::Zero(IntTag()))...};
+    for (std::size_t p = 0; p < pairs; ++p, words += kColumnNumbers) {
+      const IntVector high_pair[] = {pair(weights[kFrame].high + 2 * p)...};
+      const IntVector low_pair[] = {pair(weights[kFrame].low + 2 * p)...};
+      ((high[kSum] =
+            add_pair_product(hn::Load(IntTag(), words + B::place(kSum)), high_pair[B::frame(kSum)], high[kSum]),
+        low[kSum] = add_pair_product(hn::Load(IntTag(), words + B::place(kSum)), low_pair[B::frame(kSum)], low[kSum])),
+       ...);
+    }
+    const auto add = [&](IntVector high_sum, IntVector low_sum, float of_frame, float* to) {
+      const Vector sum =
+          hn::MulAdd(hn::Set(Tag(), kHigh), hn::ConvertTo(Tag(), high_sum), hn::ConvertTo(Tag(), low_sum));
+      hn::Store(hn::MulAdd(hn::Set(Tag(), of_frame), sum, hn::Load(Tag(), to)), Tag(), to);
+    };
+    (add(high[kSum], low[kSum], unit[B::frame(kSum)], sums + B::frame(kSum) * kColumnNumbers + B::place(kSum)), ...);
+  }
+
+  template <class B, class MotionOf, std::size_t... kSum>
+  static HWY_INLINE void store_block(const float* sums, const MotionOf& motion_of, const FrameTarget* targets,
+                                     std::size_t vertex, std::size_t vertices, std::index_sequence<kSum...>) {
+    const Vector sum[] = {hn::Load(Tag(), sums + B::frame(kSum) * kColumnNumbers + B::place(kSum))...};
+    move_and_store_block<B>(sum, motion_of, targets, vertex, vertices,
+                            std::make_index_sequence<B::kFrames * B::kVectors>());
+  }
+};
 
 /// One frame: its motion stays in registers from panel to panel.
-template <class Columns>
-HWY_INLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, std::size_t last,
-                                const FrameFactors& frame, const FrameTarget& target) {
+template <class Panels>
+HWY_NOINLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, std::size_t last,
+                                  const FrameFactors& frame, const FrameTarget& target) {
   const Motion motion(frame);
   const auto motion_of = [&](std::size_t) -> const Motion& { return motion; };
   for (std::size_t panel = first; panel < last; ++panel) {
-    evaluate_panel<SingleBlock, Columns>(matrix, panel, &frame, motion_of, &target);
+    Panels::template evaluate<typename Panels::SingleBlock>(matrix, panel, &frame, motion_of, &target);
   }
 }
 
-template <class Columns>
+template <class Panels>
 HWY_INLINE void evaluate_panels(const PanelMatrix& matrix, std::size_t first, std::size_t last,
                                 const FrameFactors* frames, const FrameTarget* targets, std::size_t frame_count) {
+  using Single = typename Panels::SingleBlock;
+  using Batch = typename Panels::BatchBlock;
   if (frame_count == 1) {
-    evaluate_single<Columns>(matrix, first, last, *frames, *targets);
+    evaluate_single<Panels>(matrix, first, last, *frames, *targets);
     return;
   }
   for (std::size_t panel = first; panel < last; ++panel) {
     std::size_t f = 0;
     const auto motion_of = [&](std::size_t i) { return Motion(frames[f + i]); };
-    for (; f + BatchBlock::kFrames <= frame_count; f += BatchBlock::kFrames) {
-      evaluate_panel<BatchBlock, Columns>(matrix, panel, frames + f, motion_of, targets + f);
+    for (; f + Batch::kFrames <= frame_count; f += Batch::kFrames) {
+      Panels::template evaluate<Batch>(matrix, panel, frames + f, motion_of, targets + f);
     }
-    for (; f < frame_count; ++f)
-      evaluate_panel<SingleBlock, Columns>(matrix, panel, frames + f, motion_of, targets + f);
+    for (; f < frame_count; ++f) {
+      Panels::template evaluate<Single>(matrix, panel, frames + f, motion_of, targets + f);
+    }
   }
 }
 
 void panel_product(const PanelMatrix& matrix, std::size_t first, std::size_t last, const FrameFactors* frames,
                    const FrameTarget* targets, std::size_t frame_count) {
   if (matrix.quantised) {
-    evaluate_panels<QuantisedColumns>(matrix, first, last, frames, targets, frame_count);
+    evaluate_panels<QuantisedPanels>(matrix, first, last, frames, targets, frame_count);
   } else {
-    evaluate_panels<FloatColumns>(matrix, first, last, frames, targets, frame_count);
+    evaluate_panels<FloatPanels>(matrix, first, last, frames, targets, frame_count);
   }
 }
 

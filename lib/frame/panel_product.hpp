@@ -15,10 +15,13 @@ inline constexpr std::size_t kHalfPanel = kPanelWidth / 2;
 /// Numbers of one column of a panel: x of 32 vertices, then y, then z.
 inline constexpr std::size_t kColumnNumbers = 3 * kPanelWidth;
 
-/// Where a panel begins and how many entries (columns, or parts of columns) it has.
+/// Where a panel begins and how many entries (columns, or parts of columns) it has. The rest is for quantised panels.
 struct PanelPlace {
   std::size_t offset = 0;  ///< bytes, a multiple of 64
   std::size_t entries = 0;
+  std::uint32_t adjacent = 0;  ///< first entries that belong to columns in order: all, or whole lines of 16
+  std::uint32_t column = 0;    ///< of the first of them
+  float scale = 1;             ///< those of the entries are relative to it: a power of two
 };
 
 /// [X R] by panels of 32 vertices, in one sequential stream of bytes; padding vertices are zero. A panel is
@@ -26,12 +29,13 @@ struct PanelPlace {
 /// then, in single precision, for every column of R
 ///   float    column[96]
 /// or, quantised, for every entry (a column where a panel needs it; twice, as value and remainder, where it needs that)
-///   uint32   which column, padded to a multiple of 64 bytes together with
-///   float    scale, times 2^-16
-///   int32    words[48]
-/// Word i of a component holds vertex i in its lower half and, plus what the lower half adds as an unsigned fraction,
-/// vertex i + 16 in its upper half: one load and one shift give two vectors, and the fraction costs no accuracy since
-/// the upper number is rounded with it in view.
+///   float    scale, padded by zeros to whole lines of 64 bytes
+/// for those that are not adjacent
+///   uint32   which column, padded likewise
+/// and for every two entries
+///   int32    words[96]
+/// of which word i holds number i of the first entry in its lower half and of the second in its upper half (zero where
+/// there is none): the form in which processors multiply 16-bit numbers by pairs and add.
 struct PanelMatrix {
   const std::byte* data = nullptr;  ///< 64-byte aligned
   const PanelPlace* places = nullptr;
@@ -41,12 +45,13 @@ struct PanelMatrix {
   std::size_t panels() const { return (vertices + kPanelWidth - 1) / kPanelWidth; }
 };
 
-constexpr std::size_t padded_to_line(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
-/// Bytes of the rest positions, of a column of either kind, and of the list of entries.
+/// Bytes of the rest positions, of two quantised columns, and of the list of entries.
 inline constexpr std::size_t kRestBytes = kColumnNumbers * sizeof(float);
-inline constexpr std::size_t kQuantisedColumnBytes = kColumnNumbers * sizeof(std::int16_t);
-constexpr std::size_t entry_list_bytes(std::size_t entries) {
-  return padded_to_line(entries * (sizeof(std::uint32_t) + sizeof(float)));
+inline constexpr std::size_t kColumnPairBytes = kColumnNumbers * sizeof(std::int32_t);
+/// Entries as many as fill whole lines in their list.
+constexpr std::size_t padded_entries(std::size_t entries) { return (entries + 15) / 16 * 16; }
+constexpr std::size_t entry_list_bytes(std::size_t entries, std::size_t adjacent) {
+  return padded_entries(entries) * sizeof(float) + padded_entries(entries - adjacent) * sizeof(std::uint32_t);
 }
 
 /// What changes from frame to frame. Rotation and translation are repeated for 16 vertices, so that an aligned vector
@@ -54,7 +59,8 @@ constexpr std::size_t entry_list_bytes(std::size_t entries) {
 struct FrameFactors {
   static constexpr std::size_t kRepeated = 3 * kHalfPanel;
 
-  const float* weights = nullptr;            ///< q, one a column
+  const float* weights = nullptr;            ///< q, one a column, in memory from make_weights where R is quantised
+  float weight_limit = 1;                    ///< a power of two above all of them
   float rest = 1;                            ///< times the rest positions
   alignas(64) float rotation[3][kRepeated];  ///< rotation[j][i] = Q(i mod 3, j)
   alignas(64) float translation[kRepeated];  ///< t(i mod 3)

@@ -14,8 +14,8 @@ PartialFrame::PartialFrame(const FrameModel& model, Index most)
       moving_(static_cast<std::size_t>(std::max<Index>(most, 0))),
       panels_(static_cast<std::size_t>(model.vertex_count()), 3 * moving_.size()),
       weights_(3 * moving_.size(), 0.0F),
-      all_weights_(static_cast<std::size_t>(3 * model.landmark_count()), 0.0F),
-      packed_weights_(model.weight_count()),
+      all_weights_(detail::make_weights(static_cast<std::size_t>(3 * model.landmark_count()))),
+      packed_weights_(detail::make_weights(model.weight_count())),
       positions_(static_cast<std::size_t>(3 * model.vertex_count())) {
   if (most < 1 || most > model.landmark_count()) {
     throw Error(ErrorCode::usage, "frame: room for " + std::to_string(most) + " moving landmarks of " +
@@ -47,15 +47,19 @@ void PartialFrame::sum_of_others(const FrameState& state) noexcept {
   detail::FrameFactors frame{};
   detail::repeat_rigid({}, Vec3::Zero(), frame);
   frame.weights = packed_weights_.data();
+  const auto evaluate = [&] {
+    model_->packed_weights(all_weights_.data(), packed_weights_.data());
+    frame.weight_limit = detail::weight_limit(packed_weights_.data(), model_->weight_count());
+    model_->product(&frame, &target, 1);
+  };
   const Eigen::VectorXd& q = state.motion().weights;
-  for (std::size_t k = 0; k < all_weights_.size(); ++k) all_weights_[k] = static_cast<float>(q[Index(k)]);
+  for (Index k = 0; k < q.size(); ++k) all_weights_[std::size_t(k)] = static_cast<float>(q[k]);
   for (std::size_t c = 0; c < 3 * static_cast<std::size_t>(count_); ++c) {
     const auto column = static_cast<std::size_t>(3 * moving_[c / 3]) + c % 3;
     weights_[c] = all_weights_[column];
     all_weights_[column] = 0;
   }
-  model_->packed_weights(all_weights_.data(), packed_weights_.data());
-  model_->product(&frame, &target, 1);
+  evaluate();
   panels_.set_rest(positions_);
   // A column by itself is the frame of its unit weight without rest positions, however R is stored.
   frame.rest = 0;
@@ -63,8 +67,7 @@ void PartialFrame::sum_of_others(const FrameState& state) noexcept {
   for (std::size_t c = 0; c < 3 * static_cast<std::size_t>(count_); ++c) {
     float& weight = all_weights_[static_cast<std::size_t>(3 * moving_[c / 3]) + c % 3];
     weight = 1;
-    model_->packed_weights(all_weights_.data(), packed_weights_.data());
-    model_->product(&frame, &target, 1);
+    evaluate();
     weight = 0;
     panels_.set_column(c, positions_);
   }

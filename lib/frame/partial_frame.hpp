@@ -46,11 +46,11 @@ class PartialFrame {
   RigidMotion rigid_;          ///< held
   std::vector<Index> moving_;  ///< with room for most
   Index count_ = 0;
-  detail::ColumnPanels panels_;        ///< sum of the others, and the moving landmarks' columns
-  std::vector<float> weights_;         ///< of the columns in panels_
-  std::vector<float> all_weights_;     ///< q, while columns are summed
-  std::vector<float> packed_weights_;  ///< what the model makes of it
-  std::vector<float> positions_;       ///< of a frame that goes into panels_
+  detail::ColumnPanels panels_;                  ///< sum of the others, and the moving landmarks' columns
+  std::vector<float> weights_;                   ///< of the columns in panels_
+  detail::AlignedVector<float> all_weights_;     ///< q, while columns are summed
+  detail::AlignedVector<float> packed_weights_;  ///< what the model makes of it
+  std::vector<float> positions_;                 ///< of a frame that goes into panels_
   detail::FrameFactors factors_;
 };
 
