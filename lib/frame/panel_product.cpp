@@ -168,7 +168,9 @@ HWY_INLINE IntVector add_pair_product(IntVector words, IntVector weights, IntVec
 #elif HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
   const hn::RepartitionToNarrow<IntTag> pairs;
   IntVector unused = hn::Zero(IntTag());
-  return hn::ReorderWidenMulAccumulate(IntTag(), hn::BitCast(pairs, words), hn::BitCast(pairs, weights), sum, unused);
+  sum = hn::ReorderWidenMulAccumulate(IntTag(), hn::BitCast(pairs, words), hn::BitCast(pairs, weights), sum, unused);
+  asm volatile("" : "+v"(sum.raw));  // one by one: GCC would take many products first and run out of registers
+  return sum;
 #else
   const auto lower = [](IntVector v) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
   sum = hn::Add(sum, hn::Mul(lower(words), lower(weights)));
@@ -180,7 +182,7 @@ HWY_INLINE IntVector add_pair_product(IntVector words, IntVector weights, IntVec
 /// sums of 32 entries are exact in 32 bits.
 struct QuantisedPanels {
   // Two integers in registers for every sum, one of each part.
-  using SingleBlock = Block<(kLanes >= 16 ? 2 : 1), 1>;
+  using SingleBlock = Block<(kLanes >= 8 ? 2 : 1), 1>;
   using BatchBlock = Block<(kLanes >= 16 ? 2 : 1), 2>;
 
   template <class B, class MotionOf>
@@ -260,6 +262,9 @@ struct QuantisedPanels {
     IntVector high[] = {(static_cast<void>(kSum), hn::Zero(IntTag()))...};
     IntVector low[] = {(static_cast<void>(kSum), hn::Zero(IntTag()))...};
     for (std::size_t p = 0; p < pairs; ++p, words += kColumnNumbers) {
+      if constexpr (B::kVertices < kPanelWidth) {  // what the next block reads, so that the stream has no gaps
+        for (std::size_t c = 0; c < 3; ++c) hwy::Prefetch(words + c * kPanelWidth + B::kVertices);
+      }
       const IntVector high_pair[] = {pair(weights[kFrame].high + 2 * p)...};
       const IntVector low_pair[] = {pair(weights[kFrame].low + 2 * p)...};
       ((high[kSum] =
@@ -284,7 +289,7 @@ struct QuantisedPanels {
   }
 };
 
-/// One frame: its motion stays in registers from panel to panel.
+/// One frame: its motion stays in registers from panel to panel, for which it must not share them with batches.
 template <class Panels>
 HWY_NOINLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, std::size_t last,
                                   const FrameFactors& frame, const FrameTarget& target) {
