@@ -134,10 +134,10 @@ void BlockRows<T>::run(Block& work) const {
 }
 
 template <class T>
-void BlockRows<T>::run_sparse(Block& work, std::vector<char>& filled) const {
-  const auto is_filled = [&](const WorkRange& range) -> char& { return filled[range.first / Index(kTileStep)]; };
+void BlockRows<T>::run_sparse(Block& work, FilledRanges& filled) const {
+  const auto is_filled = [&](const WorkRange& range) { return filled.contains(range); };
   for (const BlockRow& row : rows_) {
-    if (multiply_row(row, work, row.adds && is_filled(row.out), is_filled)) is_filled(row.out) = true;
+    if (multiply_row(row, work, row.adds && is_filled(row.out), is_filled)) filled.add(row.out);
   }
 }
 

@@ -22,6 +22,17 @@ struct WorkRange {
 /// The next multiple of `step`.
 inline Index round_up(Index n, std::size_t step) { return (n + Index(step) - 1) / Index(step) * Index(step); }
 
+/// Which ranges of a workspace hold anything but zeros; each is known by its first row, a multiple of kTileStep.
+class FilledRanges {
+ public:
+  explicit FilledRanges(Index rows) : filled_(std::size_t(rows) / kTileStep, false) {}
+  bool contains(const WorkRange& range) const { return filled_[std::size_t(range.first) / kTileStep]; }
+  void add(const WorkRange& range) { filled_[std::size_t(range.first) / kTileStep] = true; }
+
+ private:
+  std::vector<bool> filled_;
+};
+
 /// out = A times the stacked `sources`, or out += that.
 struct BlockRow {
   WorkRange out;  ///< the length a multiple of kTileStep
@@ -61,9 +72,9 @@ class BlockRows {
   /// Runs the schedule over a workspace (rows by at most kMostColumns, row-major). The same bits for any number of
   /// threads.
   void run(Block& work) const;
-  /// The same by one thread, for a workspace that is zero but for ranges whose first row / kTileStep is `filled`;
-  /// nothing else is read or multiplied. What is written is filled from then on.
-  void run_sparse(Block& work, std::vector<char>& filled) const;
+  /// The same by one thread, for a workspace that is zero but for what is `filled`; nothing else is read or multiplied.
+  /// What is written is filled from then on.
+  void run_sparse(Block& work, FilledRanges& filled) const;
 
   std::size_t size() const { return rows_.size(); }
   std::size_t numbers() const { return numbers_.size() + packed_.size(); }

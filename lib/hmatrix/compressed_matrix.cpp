@@ -249,12 +249,12 @@ void CompressedMatrix<T>::multiply(const VectorBlock& X, VectorBlock& Y, Block& 
 template <class T>
 void CompressedMatrix<T>::multiply_sparse(const VectorBlock& X, VectorBlock& Y, Block& work) const {
   if (work.rows() != work_rows_ || work.cols() != X.cols()) work.resize(work_rows_, X.cols());
-  std::vector<char> filled(static_cast<std::size_t>(work_rows_) / kTileStep, false);
+  FilledRanges filled(work_rows_);
   for (const std::int32_t leaf : tree_.leaves()) {
     const WorkRange dofs = dofs_of(tree_.clusters()[leaf]);
     if ((X.middleRows(dofs.first, dofs.length).array() == 0).all()) continue;
     work.middleRows(dofs.first, dofs.length) = X.middleRows(dofs.first, dofs.length).template cast<T>();
-    filled[dofs.first / Index(kTileStep)] = true;
+    filled.add(dofs);
   }
   work.bottomRows(rows_).setZero();
   upwards_.run_sparse(work, filled);

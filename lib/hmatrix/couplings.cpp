@@ -136,10 +136,10 @@ void Couplings<T>::run(Block& work) const {
 }
 
 template <class T>
-void Couplings<T>::run_sparse(Block& work, std::vector<char>& filled) const {
-  const auto is_filled = [&](const WorkRange& range) -> char& { return filled[range.first / Index(kTileStep)]; };
+void Couplings<T>::run_sparse(Block& work, FilledRanges& filled) const {
+  const auto is_filled = [&](const WorkRange& range) { return filled.contains(range); };
   for (std::size_t c = 0; c < far_.size(); ++c) {
-    if (multiply_cluster(c, work, is_filled)) is_filled(row_range_[c]) = true;
+    if (multiply_cluster(c, work, is_filled)) filled.add(row_range_[c]);
   }
 }
 

@@ -29,7 +29,7 @@ class Couplings {
   /// Writes the coefficients of every cluster that has far partners. The same bits for any number of threads.
   void run(Block& work) const;
   /// The same as BlockRows::run_sparse.
-  void run_sparse(Block& work, std::vector<char>& filled) const;
+  void run_sparse(Block& work, FilledRanges& filled) const;
 
   bool has_partners(std::int32_t cluster) const { return !far_[cluster].empty(); }
   /// Entries of all couplings.

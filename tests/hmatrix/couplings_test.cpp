@@ -86,12 +86,10 @@ TYPED_TEST(CouplingsOfABody, AreValuesOfTheKernel) {
 }
 
 TYPED_TEST(CouplingsOfABody, LeaveOutWhatIsNotFilled) {
-  std::vector<char> filled(static_cast<std::size_t>(this->end) / kTileStep, false);
+  FilledRanges filled(this->end);
   const auto is_wanted = [](std::int32_t cluster) { return cluster % 3 == 0; };
   for (std::size_t c = 0; c < this->column_ranges.size(); ++c) {
-    if (this->column_ranges[c].length > 0) {
-      filled[std::size_t(this->column_ranges[c].first) / kTileStep] = is_wanted(std::int32_t(c));
-    }
+    if (this->column_ranges[c].length > 0 && is_wanted(std::int32_t(c))) filled.add(this->column_ranges[c]);
   }
   const auto before = this->random_workspace();
   auto after = before;
@@ -100,8 +98,7 @@ TYPED_TEST(CouplingsOfABody, LeaveOutWhatIsNotFilled) {
   for (std::size_t c = 0; c < this->row_ranges.size(); ++c) {
     if (this->row_ranges[c].length == 0) continue;
     const auto& far = this->partition.far[c];
-    EXPECT_EQ(bool(filled[std::size_t(this->row_ranges[c].first) / kTileStep]),
-              std::any_of(far.begin(), far.end(), is_wanted));
+    EXPECT_EQ(filled.contains(this->row_ranges[c]), std::any_of(far.begin(), far.end(), is_wanted));
   }
 }
 

@@ -131,13 +131,14 @@ TYPED_TEST(TileProduct, OfBlockRowsAddsWhereThereIsSomethingToAddTo) {
   expect(work, before + product, "all");
   for (const bool x_filled : {false, true}) {
     for (const bool out_filled : {false, true}) {
-      std::vector<char> filled((n + m) / kTileStep, false);
-      filled[0] = x_filled;
-      filled[n / Index(kTileStep)] = out_filled;
+      const WorkRange x{0, n}, out{n, m};
+      FilledRanges filled(n + m);
+      if (x_filled) filled.add(x);
+      if (out_filled) filled.add(out);
       work = start;
       rows.run_sparse(work, filled);
       expect(work, !x_filled ? before : out_filled ? Full(before + product) : product, "sparse");
-      EXPECT_EQ(bool(filled[n / Index(kTileStep)]), x_filled || out_filled);
+      EXPECT_EQ(filled.contains(out), x_filled || out_filled);
     }
   }
 }
