@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The rigid part of a frame as the kernel wants it. Internal to the floor.
+/// Weights and the rigid part of a frame as the kernel wants them. Internal to the floor.
 #pragma once
 
 #include <algorithm>

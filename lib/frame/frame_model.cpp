@@ -90,16 +90,18 @@ std::size_t FrameModel::weight_count() const noexcept {
   return 3 * (coordinates_.vertices + static_cast<std::size_t>(landmark_count()));
 }
 
-void FrameModel::packed_weights(const float* q, float* weights) const noexcept {
+float FrameModel::packed_weights(const float* q, float* weights) const noexcept {
   std::copy(q, q + 3 * landmark_count(), weights + 3 * coordinates_.vertices);
-  if (coordinates_.vertices == 0) return;
+  const float limit = detail::weight_limit(q, static_cast<std::size_t>(3 * landmark_count()));
+  if (coordinates_.vertices == 0) return limit;
   detail::FrameFactors frame{};
   frame.weights = q;
-  frame.weight_limit = detail::weight_limit(q, static_cast<std::size_t>(3 * landmark_count()));
+  frame.weight_limit = limit;
   detail::repeat_rigid({}, Vec3::Zero(), frame);
   const detail::FrameTarget target{weights};
   const detail::PanelMatrix coordinates = coordinates_.matrix();
   detail::panel_product(coordinates, 0, coordinates.panels(), &frame, &target, 1);
+  return detail::weight_limit(weights, weight_count());
 }
 
 void FrameModel::product(const detail::FrameFactors* frames, const detail::FrameTarget* targets,
@@ -141,8 +143,7 @@ bool FrameState::accept_candidate() noexcept {
   }
   std::swap(motion_, candidate_);
   for (Index k = 0; k < motion_.weights.size(); ++k) q_[std::size_t(k)] = static_cast<float>(motion_.weights[k]);
-  model_->packed_weights(q_.data(), weights_.data());
-  factors_.weight_limit = detail::weight_limit(weights_.data(), model_->weight_count());
+  factors_.weight_limit = model_->packed_weights(q_.data(), weights_.data());
   repeat_rigid();
   return true;
 }

@@ -88,9 +88,10 @@ class FrameModel {
   detail::FrameTarget target(float* data, std::size_t stride) const noexcept {
     return {data, stride, compressed() ? order_.data() : nullptr};
   }
-  /// Weights of the packed columns, and how many: q itself, or z = Z q and q where R is compressed.
+  /// How many weights the packed columns have.
   std::size_t weight_count() const noexcept;
-  void packed_weights(const float* q, float* weights) const noexcept;
+  /// Makes them: q itself, or z = Z q and q where R is compressed. Returns their limit.
+  float packed_weights(const float* q, float* weights) const noexcept;
   const Vec3& packing_centre() const noexcept { return centre_; }
   /// All vertices of `count` frames, on the calling thread.
   void product(const detail::FrameFactors* frames, const detail::FrameTarget* targets,

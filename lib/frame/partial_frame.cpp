@@ -48,8 +48,7 @@ void PartialFrame::sum_of_others(const FrameState& state) noexcept {
   detail::repeat_rigid({}, Vec3::Zero(), frame);
   frame.weights = packed_weights_.data();
   const auto evaluate = [&] {
-    model_->packed_weights(all_weights_.data(), packed_weights_.data());
-    frame.weight_limit = detail::weight_limit(packed_weights_.data(), model_->weight_count());
+    frame.weight_limit = model_->packed_weights(all_weights_.data(), packed_weights_.data());
     model_->product(&frame, &target, 1);
   };
   const Eigen::VectorXd& q = state.motion().weights;
