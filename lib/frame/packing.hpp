@@ -12,6 +12,10 @@
 
 namespace skinbem::detail {
 
+/// Panels of more bytes are taken to come from memory. On a processor with 48 MiB of shared cache, turns gained from 16
+/// to 24 MiB on.
+inline constexpr std::size_t kCacheBytes = std::size_t{16} << 20;
+
 /// The memory of a PanelMatrix.
 struct PackedPanels {
   AlignedVector<std::byte> data;
@@ -22,7 +26,9 @@ struct PackedPanels {
   /// landmark stays within, it bounds the error of any vertex's displacement. 0 in single precision.
   double error_factor = 0;
 
-  PanelMatrix matrix() const { return {data.data(), places.data(), vertices, quantised}; }
+  PanelMatrix matrix() const {
+    return {data.data(), places.data(), vertices, quantised, data.size() > kCacheBytes};
+  }
 };
 
 /// Part of a column of a panel in int16.

@@ -30,14 +30,18 @@ using Vector = hn::Vec<Tag>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
 /// The shape of the work: kVectors vectors of adjacent vertices, kFrames frames at once. There is a sum for each frame,
-/// component and vector.
+/// component and vector. Where kTurns is above one, so many panels are read in turns, kBurst columns (or pairs of
+/// columns) of each: one core reads memory faster from several places than from one.
 ///
 /// All loops over sums are expanded from index sequences: compilers keep an array in registers only where every index
 /// is a constant from the outset.
-template <std::size_t kVectors_, std::size_t kFrames_>
+template <std::size_t kVectors_, std::size_t kFrames_, std::size_t kTurns_ = 1>
 struct Block {
   static constexpr std::size_t kVectors = kVectors_;
   static constexpr std::size_t kFrames = kFrames_;
+  static constexpr std::size_t kTurns = kTurns_;
+  static constexpr bool kInTurns = kTurns > 1;
+  static constexpr std::size_t kBurst = 2;
   static constexpr std::size_t kSums = 3 * kVectors * kFrames;
   static constexpr std::size_t kVertices = kVectors * kLanes;
 
@@ -47,6 +51,8 @@ struct Block {
   static constexpr std::size_t place(std::size_t sum) {
     return sum / kVectors % 3 * kPanelWidth + sum % kVectors * kLanes;
   }
+  /// Where a sum is in memory: as its numbers are, the next frame kColumnNumbers further.
+  static constexpr std::size_t memory(std::size_t sum) { return frame(sum) * kColumnNumbers + place(sum); }
 };
 
 /// Which vertex each lane of the three vectors x0 y0 z0 x1 y1 z1 ... takes its coordinates from.
@@ -126,34 +132,58 @@ HWY_INLINE void move_and_store_block(const Vector (&sum)[B::kSums], const Motion
 struct FloatPanels {
   // As many sums as registers allow: enough to hide the latency of the multiply-add, and in a batch each number of R
   // that is loaded serves several frames.
-  using SingleBlock = Block<std::min<std::size_t>(4, kPanelWidth / kLanes), 1>;
+  static constexpr std::size_t kVectors = std::min<std::size_t>(4, kPanelWidth / kLanes);
+  using SingleBlock = Block<kVectors, 1>;
+  using TurnsBlock = Block<kVectors, 1, 8>;
   using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
 
+  /// `count` panels from `first` on, at most B::kTurns.
   template <class B, class MotionOf>
-  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
-                                  const MotionOf& motion_of, const FrameTarget* targets) {
-    for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
-      evaluate_block<B>(matrix, panel, shift, frames, motion_of, targets, std::make_index_sequence<B::kSums>(),
-                        std::make_index_sequence<B::kFrames>());
-    }
+  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t count,
+                                  const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets) {
+    if constexpr (!B::kInTurns) count = 1;
+    HWY_ALIGN float sums[B::kTurns][B::kFrames * kColumnNumbers];
+    const std::size_t columns = matrix.places[first].entries;
+    std::size_t k = 0;
+    do {
+      const std::size_t end = B::kInTurns ? std::min(k + B::kBurst, columns) : columns;
+      for (std::size_t turn = 0; turn < count; ++turn) {
+        for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
+          add_columns<B>(matrix, first + turn, shift, k, end, frames, motion_of, targets, sums[turn] + shift,
+                         std::make_index_sequence<B::kSums>(), std::make_index_sequence<B::kFrames>());
+        }
+      }
+      k = end;
+    } while (B::kInTurns && k < columns);
   }
 
  private:
+  /// Columns [k, end) of a block. Its sums begin with the rest positions, are in `sums` between bursts, and after the
+  /// last column become positions.
   template <class B, class MotionOf, std::size_t... kSum, std::size_t... kFrame>
-  static HWY_INLINE void evaluate_block(const PanelMatrix& matrix, std::size_t panel, std::size_t shift,
-                                        const FrameFactors* frames, const MotionOf& motion_of,
-                                        const FrameTarget* targets, std::index_sequence<kSum...>,
-                                        std::index_sequence<kFrame...>) {
+  static HWY_INLINE void add_columns(const PanelMatrix& matrix, std::size_t panel, std::size_t shift, std::size_t k,
+                                     std::size_t end, const FrameFactors* frames, const MotionOf& motion_of,
+                                     const FrameTarget* targets, float* sums, std::index_sequence<kSum...>,
+                                     std::index_sequence<kFrame...>) {
     const float* rest = reinterpret_cast<const float*>(matrix.data + matrix.places[panel].offset) + shift;
-    Vector sum[] = {hn::Mul(hn::Set(Tag(), frames[B::frame(kSum)].rest), hn::Load(Tag(), rest + B::place(kSum)))...};
-    const float* column = rest;
-    for (std::size_t k = 0; k < matrix.places[panel].entries; ++k) {
+    Vector sum[B::kSums];
+    if (!B::kInTurns || k == 0) {
+      ((sum[kSum] = hn::Mul(hn::Set(Tag(), frames[B::frame(kSum)].rest), hn::Load(Tag(), rest + B::place(kSum)))), ...);
+    } else {
+      ((sum[kSum] = hn::Load(Tag(), sums + B::memory(kSum))), ...);
+    }
+    const float* column = rest + k * kColumnNumbers;
+    for (; k < end; ++k) {
       column += kColumnNumbers;
       const Vector weight[] = {hn::Set(Tag(), frames[kFrame].weights[k])...};
       ((sum[kSum] = hn::MulAdd(hn::Load(Tag(), column + B::place(kSum)), weight[B::frame(kSum)], sum[kSum])), ...);
     }
-    move_and_store_block<B>(sum, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,
-                            std::make_index_sequence<B::kFrames * B::kVectors>());
+    if (!B::kInTurns || end == matrix.places[panel].entries) {
+      move_and_store_block<B>(sum, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,
+                              std::make_index_sequence<B::kFrames * B::kVectors>());
+    } else {
+      (hn::Store(sum[kSum], Tag(), sums + B::memory(kSum)), ...);
+    }
   }
 };
 
@@ -182,38 +212,38 @@ HWY_INLINE IntVector add_pair_product(IntVector words, IntVector weights, IntVec
 /// sums of 32 entries are exact in 32 bits.
 struct QuantisedPanels {
   // Two integers in registers for every sum, one of each part.
-  using SingleBlock = Block<(kLanes >= 8 ? 2 : 1), 1>;
+  static constexpr std::size_t kVectors = kLanes >= 8 ? 2 : 1;
+  using SingleBlock = Block<kVectors, 1>;
+  using TurnsBlock = Block<kVectors, 1, 8>;
   using BatchBlock = Block<(kLanes >= 16 ? 2 : 1), 2>;
 
+  /// `count` panels from `first` on, at most B::kTurns.
   template <class B, class MotionOf>
-  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t panel, const FrameFactors* frames,
-                                  const MotionOf& motion_of, const FrameTarget* targets) {
-    const PanelPlace& place = matrix.places[panel];
-    const auto* rest = reinterpret_cast<const float*>(matrix.data + place.offset);
-    const float* scale = rest + kColumnNumbers;
-    const auto* words = reinterpret_cast<const std::int32_t*>(matrix.data + place.offset + kRestBytes +
-                                                              entry_list_bytes(place.entries, place.adjacent));
-    HWY_ALIGN float sums[B::kFrames][kColumnNumbers];
-    float unit[B::kFrames];
-    for (std::size_t f = 0; f < B::kFrames; ++f) {
-      unit[f] = place.scale * frames[f].weight_limit / (kHigh * kHigh);
-      for (std::size_t i = 0; i < kColumnNumbers; i += kLanes) {
-        hn::Store(hn::Mul(hn::Set(Tag(), frames[f].rest), hn::Load(Tag(), rest + i)), Tag(), sums[f] + i);
+  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t count,
+                                  const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets) {
+    if constexpr (!B::kInTurns) count = 1;
+    Panel<B> panels[B::kTurns];
+    SplitWeights weights[B::kTurns][B::kFrames];
+    Integers<B> integers[B::kTurns];
+    HWY_ALIGN float sums[B::kTurns][B::kFrames * kColumnNumbers];
+    std::size_t entries = 0;
+    for (std::size_t turn = 0; turn < count; ++turn) {
+      begin(matrix, first + turn, frames, panels[turn], sums[turn]);
+      entries = std::max(entries, panels[turn].place->entries);
+    }
+    for (std::size_t k = 0; k < entries; k += kGroup) {
+      for (std::size_t turn = 0; turn < count; ++turn) split_weights(k, frames, panels[turn], weights[turn]);
+      for (std::size_t p = 0; p < kGroup / 2; p += B::kInTurns ? B::kBurst : kGroup / 2) {
+        for (std::size_t turn = 0; turn < count; ++turn) {
+          add_burst(k, p, weights[turn], panels[turn], integers[turn], sums[turn]);
+        }
       }
     }
-    for (std::size_t k = 0; k < place.entries; k += kGroup) {
-      const std::size_t pairs = (std::min(kGroup, place.entries - k) + 1) / 2;
-      SplitWeights weights[B::kFrames];
-      for (std::size_t f = 0; f < B::kFrames; ++f) split(place, scale, k, frames[f], weights[f]);
+    for (std::size_t turn = 0; turn < count; ++turn) {
       for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
-        add_group<B>(words + shift, pairs, weights, unit, sums[0] + shift, std::make_index_sequence<B::kSums>(),
-                     std::make_index_sequence<B::kFrames>());
+        store_block<B>(sums[turn] + shift, motion_of, targets, (first + turn) * kPanelWidth + shift, matrix.vertices,
+                       std::make_index_sequence<B::kSums>());
       }
-      words += pairs * kColumnNumbers;
-    }
-    for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
-      store_block<B>(sums[0] + shift, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,
-                     std::make_index_sequence<B::kSums>());
     }
   }
 
@@ -222,31 +252,85 @@ struct QuantisedPanels {
   static constexpr int kPartBits = 11;
   static constexpr float kHigh = 1 << kPartBits;
 
+  /// What of a panel is still to be added.
+  template <class B>
+  struct Panel {
+    const PanelPlace* place;
+    const float* scale;
+    const std::int32_t* words;  ///< of the next pair of entries
+    float unit[B::kFrames];     ///< of the integers
+  };
+
   /// Of a group of entries: a weight is high kHigh + low.
   struct SplitWeights {
     HWY_ALIGN std::int16_t high[kGroup];
     HWY_ALIGN std::int16_t low[kGroup];
   };
 
-  /// `entry` is the first of a group.
-  static HWY_INLINE void split(const PanelPlace& place, const float* scale, std::size_t entry,
-                               const FrameFactors& frame, SplitWeights& result) {
-    const auto* which = reinterpret_cast<const std::int32_t*>(scale + padded_entries(place.entries));
-    const Vector steps = hn::Set(Tag(), kHigh * kHigh / frame.weight_limit);
-    const IntVector half = hn::Set(IntTag(), 1 << (kPartBits - 1));
-    const hn::Rebind<std::int16_t, Tag> parts;
-    for (std::size_t k = 0; k < kGroup && entry + k < place.entries; k += kLanes) {
-      const std::size_t first = entry + k;
-      const Vector weights =
-          first < place.adjacent
-              ? hn::LoadU(Tag(), frame.weights + place.column + first)
-              : hn::GatherIndex(Tag(), frame.weights, hn::Load(IntTag(), which + first - place.adjacent));
-      const IntVector weight = hn::NearestInt(hn::Mul(hn::Mul(hn::Load(Tag(), scale + first), steps), weights));
-      const IntVector high = hn::ShiftRight<kPartBits>(hn::Add(weight, half));
-      hn::Store(hn::DemoteTo(parts, high), parts, result.high + k);
-      hn::Store(hn::DemoteTo(parts, hn::Sub(weight, hn::ShiftLeft<kPartBits>(high))), parts, result.low + k);
+  /// Sums of a group of entries by the parts of its weights.
+  template <class B>
+  struct Integers {
+    HWY_ALIGN std::int32_t high[B::kFrames * kColumnNumbers];
+    HWY_ALIGN std::int32_t low[B::kFrames * kColumnNumbers];
+  };
+
+  template <class B>
+  static HWY_INLINE void begin(const PanelMatrix& matrix, std::size_t index, const FrameFactors* frames,
+                               Panel<B>& panel, float* sums) {
+    const PanelPlace& place = matrix.places[index];
+    const auto* rest = reinterpret_cast<const float*>(matrix.data + place.offset);
+    panel.place = &place;
+    panel.scale = rest + kColumnNumbers;
+    panel.words = reinterpret_cast<const std::int32_t*>(matrix.data + place.offset + kRestBytes +
+                                                        entry_list_bytes(place.entries, place.adjacent));
+    for (std::size_t f = 0; f < B::kFrames; ++f) {
+      panel.unit[f] = place.scale * frames[f].weight_limit / (kHigh * kHigh);
+      for (std::size_t i = 0; i < kColumnNumbers; i += kLanes) {
+        hn::Store(hn::Mul(hn::Set(Tag(), frames[f].rest), hn::Load(Tag(), rest + i)), Tag(),
+                  sums + f * kColumnNumbers + i);
+      }
     }
   }
+
+  /// Of the group that begins with `entry`.
+  template <class B>
+  static HWY_INLINE void split_weights(std::size_t entry, const FrameFactors* frames, const Panel<B>& panel,
+                                       SplitWeights* weights_of) {
+    const PanelPlace& place = *panel.place;
+    const auto* which = reinterpret_cast<const std::int32_t*>(panel.scale + padded_entries(place.entries));
+    const IntVector half = hn::Set(IntTag(), 1 << (kPartBits - 1));
+    const hn::Rebind<std::int16_t, Tag> parts;
+    for (std::size_t f = 0; f < B::kFrames; ++f) {
+      const Vector steps = hn::Set(Tag(), kHigh * kHigh / frames[f].weight_limit);
+      for (std::size_t k = 0; k < kGroup && entry + k < place.entries; k += kLanes) {
+        const std::size_t first = entry + k;
+        const Vector weights =
+            first < place.adjacent
+                ? hn::LoadU(Tag(), frames[f].weights + place.column + first)
+                : hn::GatherIndex(Tag(), frames[f].weights, hn::Load(IntTag(), which + first - place.adjacent));
+        const IntVector weight = hn::NearestInt(hn::Mul(hn::Mul(hn::Load(Tag(), panel.scale + first), steps), weights));
+        const IntVector high = hn::ShiftRight<kPartBits>(hn::Add(weight, half));
+        hn::Store(hn::DemoteTo(parts, high), parts, weights_of[f].high + k);
+        hn::Store(hn::DemoteTo(parts, hn::Sub(weight, hn::ShiftLeft<kPartBits>(high))), parts, weights_of[f].low + k);
+      }
+    }
+  }
+
+  /// The burst from pair p on of the group that begins with `entry`.
+  template <class B>
+  static HWY_INLINE void add_burst(std::size_t entry, std::size_t p, const SplitWeights* weights, Panel<B>& panel,
+                                   Integers<B>& integers, float* sums) {
+    const std::size_t entries = panel.place->entries;
+    if (B::kInTurns && entry + 2 * p >= entries) return;
+    const std::size_t pairs = (std::min(kGroup, entries - entry) + 1) / 2;
+    const std::size_t end = B::kInTurns ? std::min(p + B::kBurst, pairs) : pairs;
+    for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
+      add_pairs<B>(p, end, pairs, shift, weights, panel, integers, sums, std::make_index_sequence<B::kSums>(),
+                   std::make_index_sequence<B::kFrames>());
+    }
+    panel.words += (end - p) * kColumnNumbers;
+  }
+
   /// The parts of two entries in every lane.
   static HWY_INLINE IntVector pair(const std::int16_t* parts) {
     std::int32_t word;
@@ -254,14 +338,24 @@ struct QuantisedPanels {
     return hn::Set(IntTag(), word);
   }
 
-  /// Adds to the sums of a block, of which those of the next frame are kColumnNumbers further.
+  /// Pairs [p, end) of a block: integers that begin with zero, are in memory between bursts, and after the last pair of
+  /// the group join the sums.
   template <class B, std::size_t... kSum, std::size_t... kFrame>
-  static HWY_INLINE void add_group(const std::int32_t* words, std::size_t pairs, const SplitWeights* weights,
-                                   const float* unit, float* sums, std::index_sequence<kSum...>,
-                                   std::index_sequence<kFrame...>) {
-    IntVector high[] = {(static_cast<void>(kSum), hn::Zero(IntTag()))...};
-    IntVector low[] = {(static_cast<void>(kSum), hn::Zero(IntTag()))...};
-    for (std::size_t p = 0; p < pairs; ++p, words += kColumnNumbers) {
+  static HWY_INLINE void add_pairs(std::size_t p, std::size_t end, std::size_t pairs, std::size_t shift,
+                                   const SplitWeights* weights, const Panel<B>& panel, Integers<B>& integers,
+                                   float* sums, std::index_sequence<kSum...>, std::index_sequence<kFrame...>) {
+    IntVector high[B::kSums];
+    IntVector low[B::kSums];
+    const auto in_memory = [&](auto* first, std::size_t sum) { return first + B::memory(sum) + shift; };
+    if (!B::kInTurns || p == 0) {
+      ((high[kSum] = hn::Zero(IntTag()), low[kSum] = hn::Zero(IntTag())), ...);
+    } else {
+      ((high[kSum] = hn::Load(IntTag(), in_memory(integers.high, kSum)),
+        low[kSum] = hn::Load(IntTag(), in_memory(integers.low, kSum))),
+       ...);
+    }
+    const std::int32_t* words = panel.words + shift;
+    for (; p < end; ++p, words += kColumnNumbers) {
       if constexpr (B::kVertices < kPanelWidth) {  // what the next block reads, so that the stream has no gaps
         for (std::size_t c = 0; c < 3; ++c) hwy::Prefetch(words + c * kPanelWidth + B::kVertices);
       }
@@ -272,31 +366,37 @@ struct QuantisedPanels {
         low[kSum] = add_pair_product(hn::Load(IntTag(), words + B::place(kSum)), low_pair[B::frame(kSum)], low[kSum])),
        ...);
     }
-    const auto add = [&](IntVector high_sum, IntVector low_sum, float of_frame, float* to) {
+    if (B::kInTurns && end < pairs) {
+      ((hn::Store(high[kSum], IntTag(), in_memory(integers.high, kSum)),
+        hn::Store(low[kSum], IntTag(), in_memory(integers.low, kSum))),
+       ...);
+      return;
+    }
+    const auto add = [&](IntVector high_sum, IntVector low_sum, float unit, float* to) {
       const Vector sum =
           hn::MulAdd(hn::Set(Tag(), kHigh), hn::ConvertTo(Tag(), high_sum), hn::ConvertTo(Tag(), low_sum));
-      hn::Store(hn::MulAdd(hn::Set(Tag(), of_frame), sum, hn::Load(Tag(), to)), Tag(), to);
+      hn::Store(hn::MulAdd(hn::Set(Tag(), unit), sum, hn::Load(Tag(), to)), Tag(), to);
     };
-    (add(high[kSum], low[kSum], unit[B::frame(kSum)], sums + B::frame(kSum) * kColumnNumbers + B::place(kSum)), ...);
+    (add(high[kSum], low[kSum], panel.unit[B::frame(kSum)], in_memory(sums, kSum)), ...);
   }
 
   template <class B, class MotionOf, std::size_t... kSum>
   static HWY_INLINE void store_block(const float* sums, const MotionOf& motion_of, const FrameTarget* targets,
                                      std::size_t vertex, std::size_t vertices, std::index_sequence<kSum...>) {
-    const Vector sum[] = {hn::Load(Tag(), sums + B::frame(kSum) * kColumnNumbers + B::place(kSum))...};
+    const Vector sum[] = {hn::Load(Tag(), sums + B::memory(kSum))...};
     move_and_store_block<B>(sum, motion_of, targets, vertex, vertices,
                             std::make_index_sequence<B::kFrames * B::kVectors>());
   }
 };
 
 /// One frame: its motion stays in registers from panel to panel, for which it must not share them with batches.
-template <class Panels>
+template <class Panels, class B>
 HWY_NOINLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, std::size_t last,
                                   const FrameFactors& frame, const FrameTarget& target) {
   const Motion motion(frame);
   const auto motion_of = [&](std::size_t) -> const Motion& { return motion; };
-  for (std::size_t panel = first; panel < last; ++panel) {
-    Panels::template evaluate<typename Panels::SingleBlock>(matrix, panel, &frame, motion_of, &target);
+  for (std::size_t panel = first; panel < last; panel += B::kTurns) {
+    Panels::template evaluate<B>(matrix, panel, std::min(B::kTurns, last - panel), &frame, motion_of, &target);
   }
 }
 
@@ -306,17 +406,19 @@ HWY_INLINE void evaluate_panels(const PanelMatrix& matrix, std::size_t first, st
   using Single = typename Panels::SingleBlock;
   using Batch = typename Panels::BatchBlock;
   if (frame_count == 1) {
-    evaluate_single<Panels>(matrix, first, last, *frames, *targets);
+    const auto evaluate =
+        matrix.from_memory ? evaluate_single<Panels, typename Panels::TurnsBlock> : evaluate_single<Panels, Single>;
+    evaluate(matrix, first, last, *frames, *targets);
     return;
   }
   for (std::size_t panel = first; panel < last; ++panel) {
     std::size_t f = 0;
     const auto motion_of = [&](std::size_t i) { return Motion(frames[f + i]); };
     for (; f + Batch::kFrames <= frame_count; f += Batch::kFrames) {
-      Panels::template evaluate<Batch>(matrix, panel, frames + f, motion_of, targets + f);
+      Panels::template evaluate<Batch>(matrix, panel, 1, frames + f, motion_of, targets + f);
     }
     for (; f < frame_count; ++f) {
-      Panels::template evaluate<Single>(matrix, panel, frames + f, motion_of, targets + f);
+      Panels::template evaluate<Single>(matrix, panel, 1, frames + f, motion_of, targets + f);
     }
   }
 }

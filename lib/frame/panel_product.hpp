@@ -41,6 +41,7 @@ struct PanelMatrix {
   const PanelPlace* places = nullptr;
   std::size_t vertices = 0;
   bool quantised = false;
+  bool from_memory = false;  ///< larger than the caches: single frames read several panels in turns. The same bits.
 
   std::size_t panels() const { return (vertices + kPanelWidth - 1) / kPanelWidth; }
 };

@@ -123,6 +123,45 @@ TEST_P(EveryInstructionSet, SumsQuantisedEntriesOfAnyColumns) {
   }
 }
 
+/// Positions of the panels [first, last) in one frame whose weights are q and whose motion is none.
+std::vector<float> positions_of(PanelMatrix matrix, bool from_memory, std::size_t first, std::size_t last,
+                                const AlignedVector<float>& q, Index columns) {
+  FrameFactors frame;
+  frame.weights = q.data();
+  frame.weight_limit = weight_limit(q.data(), columns);
+  repeat_rigid({}, Vec3::Zero(), frame);
+  std::vector<float> positions(3 * matrix.vertices);
+  const FrameTarget target{positions.data()};
+  matrix.from_memory = from_memory;
+  panel_product(matrix, first, last, &frame, &target, 1);
+  return positions;
+}
+
+TEST_P(EveryInstructionSet, PanelsInTurnsAreTheSameBits) {
+  constexpr std::size_t kPanels = 19;
+  const Points rest = 5 * Points::Random(kPanels * kPanelWidth - 5, 3);
+  const auto expect_same = [&](const PanelMatrix& matrix, Index columns) {
+    AlignedVector<float> q = make_weights(columns);
+    for (Index k = 0; k < columns; ++k) q[std::size_t(k)] = 10 * float(std::sin(1.0 + double(k)));
+    for (const auto& [first, last] : {std::pair{0, 19}, {0, 16}, {3, 11}, {5, 8}, {18, 19}}) {
+      const auto expected = positions_of(matrix, false, std::size_t(first), std::size_t(last), q, columns);
+      EXPECT_EQ(positions_of(matrix, true, std::size_t(first), std::size_t(last), q, columns), expected)
+          << columns << " columns, panels " << first << " to " << last;
+    }
+  };
+  for (const Index columns : {0, 1, 2, 3, 18, 37}) {
+    expect_same(pack_float32(rest, Eigen::MatrixXd::Random(rest.size(), columns)).matrix(), columns);
+  }
+  PackedPanels packed;
+  packed.vertices = std::size_t(rest.rows());
+  packed.quantised = true;
+  Eigen::MatrixXd kept = Eigen::MatrixXd::Zero(kColumnNumbers, 130);
+  for (std::uint32_t p = 0; p < kPanels; ++p) {  // panels of 0 to 130 entries, in no order
+    append_panel(rest, p, random_entries(numbers_from(0, p * 73 % 131), kept), packed);
+  }
+  expect_same(packed.matrix(), 130);
+}
+
 TEST(WeightLimit, IsAPowerOfTwoAboveAllWeights) {
   const std::vector<float> weights = {0.5F, -4.0F, 3.0F};
   EXPECT_EQ(weight_limit(weights.data(), 3), 8.0F);
