@@ -41,7 +41,7 @@ struct Block {
   static constexpr std::size_t kFrames = kFrames_;
   static constexpr std::size_t kTurns = kTurns_;
   static constexpr bool kInTurns = kTurns > 1;
-  static constexpr std::size_t kBurst = 2;
+  static constexpr std::size_t kBurst = 1;
   static constexpr std::size_t kSums = 3 * kVectors * kFrames;
   static constexpr std::size_t kVertices = kVectors * kLanes;
 
@@ -128,6 +128,18 @@ HWY_INLINE void move_and_store_block(const Vector (&sum)[B::kSums], const Motion
    ...);
 }
 
+/// Asks for the numbers of a column, 32 bits each, that a block reads.
+template <class B, class Number>
+HWY_INLINE void prefetch_block(const Number* from) {
+  constexpr std::size_t kLine = 16;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < B::kVertices; i += kLine) hwy::Prefetch(from + c * kPanelWidth + i);
+  }
+}
+
+/// How many columns (or pairs) before their turn.
+constexpr std::size_t kAhead = 3;
+
 /// Panels in single precision.
 struct FloatPanels {
   // As many sums as registers allow: enough to hide the latency of the multiply-add, and in a batch each number of R
@@ -137,9 +149,9 @@ struct FloatPanels {
   using TurnsBlock = Block<kVectors, 1, 8>;
   using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
 
-  /// `count` panels from `first` on, at most B::kTurns.
+  /// `count` panels, at most B::kTurns: `first` and those `step` further each.
   template <class B, class MotionOf>
-  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t count,
+  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t step, std::size_t count,
                                   const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets) {
     if constexpr (!B::kInTurns) count = 1;
     HWY_ALIGN float sums[B::kTurns][B::kFrames * kColumnNumbers];
@@ -149,7 +161,7 @@ struct FloatPanels {
       const std::size_t end = B::kInTurns ? std::min(k + B::kBurst, columns) : columns;
       for (std::size_t turn = 0; turn < count; ++turn) {
         for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
-          add_columns<B>(matrix, first + turn, shift, k, end, frames, motion_of, targets, sums[turn] + shift,
+          add_columns<B>(matrix, first + turn * step, shift, k, end, frames, motion_of, targets, sums[turn] + shift,
                          std::make_index_sequence<B::kSums>(), std::make_index_sequence<B::kFrames>());
         }
       }
@@ -175,6 +187,7 @@ struct FloatPanels {
     const float* column = rest + k * kColumnNumbers;
     for (; k < end; ++k) {
       column += kColumnNumbers;
+      if constexpr (B::kInTurns) prefetch_block<B>(column + kAhead * kColumnNumbers);
       const Vector weight[] = {hn::Set(Tag(), frames[kFrame].weights[k])...};
       ((sum[kSum] = hn::MulAdd(hn::Load(Tag(), column + B::place(kSum)), weight[B::frame(kSum)], sum[kSum])), ...);
     }
@@ -217,9 +230,9 @@ struct QuantisedPanels {
   using TurnsBlock = Block<kVectors, 1, 8>;
   using BatchBlock = Block<(kLanes >= 16 ? 2 : 1), 2>;
 
-  /// `count` panels from `first` on, at most B::kTurns.
+  /// `count` panels, at most B::kTurns: `first` and those `step` further each.
   template <class B, class MotionOf>
-  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t count,
+  static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t step, std::size_t count,
                                   const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets) {
     if constexpr (!B::kInTurns) count = 1;
     Panel<B> panels[B::kTurns];
@@ -228,7 +241,7 @@ struct QuantisedPanels {
     HWY_ALIGN float sums[B::kTurns][B::kFrames * kColumnNumbers];
     std::size_t entries = 0;
     for (std::size_t turn = 0; turn < count; ++turn) {
-      begin(matrix, first + turn, frames, panels[turn], sums[turn]);
+      begin(matrix, first + turn * step, frames, panels[turn], sums[turn]);
       entries = std::max(entries, panels[turn].place->entries);
     }
     for (std::size_t k = 0; k < entries; k += kGroup) {
@@ -241,8 +254,8 @@ struct QuantisedPanels {
     }
     for (std::size_t turn = 0; turn < count; ++turn) {
       for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
-        store_block<B>(sums[turn] + shift, motion_of, targets, (first + turn) * kPanelWidth + shift, matrix.vertices,
-                       std::make_index_sequence<B::kSums>());
+        store_block<B>(sums[turn] + shift, motion_of, targets, (first + turn * step) * kPanelWidth + shift,
+                       matrix.vertices, std::make_index_sequence<B::kSums>());
       }
     }
   }
@@ -356,8 +369,10 @@ struct QuantisedPanels {
     }
     const std::int32_t* words = panel.words + shift;
     for (; p < end; ++p, words += kColumnNumbers) {
-      if constexpr (B::kVertices < kPanelWidth) {  // what the next block reads, so that the stream has no gaps
-        for (std::size_t c = 0; c < 3; ++c) hwy::Prefetch(words + c * kPanelWidth + B::kVertices);
+      if constexpr (B::kInTurns) {
+        prefetch_block<B>(words + kAhead * kColumnNumbers);
+      } else if constexpr (B::kVertices < kPanelWidth) {
+        prefetch_block<B>(words + B::kVertices);  // what the next block reads, so that the stream has no gaps
       }
       const IntVector high_pair[] = {pair(weights[kFrame].high + 2 * p)...};
       const IntVector low_pair[] = {pair(weights[kFrame].low + 2 * p)...};
@@ -395,9 +410,12 @@ HWY_NOINLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, 
                                   const FrameFactors& frame, const FrameTarget& target) {
   const Motion motion(frame);
   const auto motion_of = [&](std::size_t) -> const Motion& { return motion; };
-  for (std::size_t panel = first; panel < last; panel += B::kTurns) {
-    Panels::template evaluate<B>(matrix, panel, std::min(B::kTurns, last - panel), &frame, motion_of, &target);
+  const std::size_t part = (last - first) / B::kTurns;
+  for (std::size_t panel = first; panel < first + part; ++panel) {
+    Panels::template evaluate<B>(matrix, panel, part, B::kTurns, &frame, motion_of, &target);
   }
+  const std::size_t left = first + part * B::kTurns;
+  if (left < last) Panels::template evaluate<B>(matrix, left, 1, last - left, &frame, motion_of, &target);
 }
 
 template <class Panels>
@@ -415,10 +433,10 @@ HWY_INLINE void evaluate_panels(const PanelMatrix& matrix, std::size_t first, st
     std::size_t f = 0;
     const auto motion_of = [&](std::size_t i) { return Motion(frames[f + i]); };
     for (; f + Batch::kFrames <= frame_count; f += Batch::kFrames) {
-      Panels::template evaluate<Batch>(matrix, panel, 1, frames + f, motion_of, targets + f);
+      Panels::template evaluate<Batch>(matrix, panel, 1, 1, frames + f, motion_of, targets + f);
     }
     for (; f < frame_count; ++f) {
-      Panels::template evaluate<Single>(matrix, panel, 1, frames + f, motion_of, targets + f);
+      Panels::template evaluate<Single>(matrix, panel, 1, 1, frames + f, motion_of, targets + f);
     }
   }
 }
