@@ -304,7 +304,7 @@ void frame_report(const ReportOptions& options) {
     });
   }
   for (const Case& c : cases(options.quick)) {
-    const nlohmann::json row = measured(c, options.quick ? 2000 : 100000, options.quick ? 0.4 : options.seconds);
+    const nlohmann::json row = measured(c, options.quick ? 2000 : 100000, options.quick ? 0.25 : options.seconds);
     const auto number = [&](const char* key) { return row[key].get<double>(); };
     std::printf("%8ld %9ld %10s %7d %9.2f %9.2f %9.2f %9.2f %9.2f %9.2f %9.2f %9.2f %7.2f %7.2f %7.2f %7.1f %9.1e\n",
                 c.vertices, c.landmarks, name_of(c.kept), c.threads, number("p50_us"), number("p99_us"),

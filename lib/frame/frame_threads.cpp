@@ -149,7 +149,8 @@ struct FrameThreads::Crew {
     frame = factors;
     target = to;
     const std::size_t panels = whole.panels();
-    piece_panels = std::max({std::size_t{1}, kPieceBytes * panels / bytes, panels / kMostPieces});
+    const std::size_t least = whole.from_memory ? detail::kPanelsInTurns : 1;
+    piece_panels = std::max({least, kPieceBytes * panels / bytes, panels / kMostPieces}) / least * least;
     const std::size_t pieces = (panels + piece_panels - 1) / piece_panels;
     done.store(0, std::memory_order_relaxed);
     ticket.store(Ticket{frame_number, 0, static_cast<std::uint16_t>(pieces)}.word(), std::memory_order_release);

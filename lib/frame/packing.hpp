@@ -26,9 +26,7 @@ struct PackedPanels {
   /// landmark stays within, it bounds the error of any vertex's displacement. 0 in single precision.
   double error_factor = 0;
 
-  PanelMatrix matrix() const {
-    return {data.data(), places.data(), vertices, quantised, data.size() > kCacheBytes};
-  }
+  PanelMatrix matrix() const { return {data.data(), places.data(), vertices, quantised, data.size() > kCacheBytes}; }
 };
 
 /// Part of a column of a panel in int16.

@@ -31,7 +31,7 @@ constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
 /// The shape of the work: kVectors vectors of adjacent vertices, kFrames frames at once. There is a sum for each frame,
 /// component and vector. Where kTurns is above one, so many panels are read in turns, kBurst columns (or pairs of
-/// columns) of each: one core reads memory faster from several places than from one.
+/// columns) of each.
 ///
 /// All loops over sums are expanded from index sequences: compilers keep an array in registers only where every index
 /// is a constant from the outset.
@@ -146,7 +146,7 @@ struct FloatPanels {
   // that is loaded serves several frames.
   static constexpr std::size_t kVectors = std::min<std::size_t>(4, kPanelWidth / kLanes);
   using SingleBlock = Block<kVectors, 1>;
-  using TurnsBlock = Block<kVectors, 1, 8>;
+  using TurnsBlock = Block<kVectors, 1, kPanelsInTurns>;
   using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
 
   /// `count` panels, at most B::kTurns: `first` and those `step` further each.
@@ -227,7 +227,7 @@ struct QuantisedPanels {
   // Two integers in registers for every sum, one of each part.
   static constexpr std::size_t kVectors = kLanes >= 8 ? 2 : 1;
   using SingleBlock = Block<kVectors, 1>;
-  using TurnsBlock = Block<kVectors, 1, 8>;
+  using TurnsBlock = Block<kVectors, 1, kPanelsInTurns>;
   using BatchBlock = Block<(kLanes >= 16 ? 2 : 1), 2>;
 
   /// `count` panels, at most B::kTurns: `first` and those `step` further each.
@@ -410,7 +410,7 @@ HWY_NOINLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, 
                                   const FrameFactors& frame, const FrameTarget& target) {
   const Motion motion(frame);
   const auto motion_of = [&](std::size_t) -> const Motion& { return motion; };
-  const std::size_t part = (last - first) / B::kTurns;
+  const std::size_t part = (last - first) / B::kTurns;  // each is read as one stream
   for (std::size_t panel = first; panel < first + part; ++panel) {
     Panels::template evaluate<B>(matrix, panel, part, B::kTurns, &frame, motion_of, &target);
   }

@@ -15,6 +15,9 @@ inline constexpr std::size_t kHalfPanel = kPanelWidth / 2;
 /// Numbers of one column of a panel: x of 32 vertices, then y, then z.
 inline constexpr std::size_t kColumnNumbers = 3 * kPanelWidth;
 
+/// Panels read in turns where they come from memory: one core reads several places faster than one.
+inline constexpr std::size_t kPanelsInTurns = 8;
+
 /// Where a panel begins and how many entries (columns, or parts of columns) it has. The rest is for quantised panels.
 struct PanelPlace {
   std::size_t offset = 0;  ///< bytes, a multiple of 64
@@ -24,7 +27,7 @@ struct PanelPlace {
   float scale = 1;             ///< those of the entries are relative to it: a power of two
 };
 
-/// [X R] by panels of 32 vertices, in one sequential stream of bytes; padding vertices are zero. A panel is
+/// [X R] by panels of 32 vertices, one after the other in memory; padding vertices are zero. A panel is
 ///   float    rest[96]
 /// then, in single precision, for every column of R
 ///   float    column[96]
@@ -41,7 +44,7 @@ struct PanelMatrix {
   const PanelPlace* places = nullptr;
   std::size_t vertices = 0;
   bool quantised = false;
-  bool from_memory = false;  ///< larger than the caches: single frames read several panels in turns. The same bits.
+  bool from_memory = false;  ///< larger than the caches: single frames read kPanelsInTurns at a time. The same bits.
 
   std::size_t panels() const { return (vertices + kPanelWidth - 1) / kPanelWidth; }
 };
