@@ -10,7 +10,8 @@ set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/skinbem")
 install(TARGETS skinbem ${library_floors} EXPORT skinbem)
 foreach(floor IN LISTS floors)
   get_property(folder GLOBAL PROPERTY SKINBEM_FOLDER_OF_${floor})
-  install(DIRECTORY "${folder}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/skinbem/${floor}" FILES_MATCHING PATTERN "*.hpp")
+  install(DIRECTORY "${folder}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/skinbem/${floor}" FILES_MATCHING PATTERN "*.hpp"
+          PATTERN "*-inl.hpp" EXCLUDE)
 endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION "${CMAKE_INSTALL_DATADIR}/skinbem"
         PATTERN make EXCLUDE)

@@ -73,8 +73,8 @@ class FrameModel {
   /// Bytes that a frame reads: R and the rest positions.
   std::size_t bytes() const noexcept { return packed_.data.size() + coordinates_.data.size(); }
   /// No vertex is displaced wrongly by more than this on account of the storage, unit of the mesh, while no q_k is
-  /// longer than options.motion_range: at most options.error_bound, 0 for float32. The arithmetic in float comes on
-  /// top.
+  /// longer than options.motion_range: at most options.error_bound, 0 for float32. The rounding of the frame's own
+  /// arithmetic, in float and of integer weights to 2^-21 of the largest, comes on top (docs/frame.md).
   double achieved_error_bound() const noexcept { return packed_.error_factor * options_.motion_range; }
 
  private:
