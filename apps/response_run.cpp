@@ -130,7 +130,9 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
   command.add_option("--tolerance", options.tolerance, "Relative error of the response, 1e-12 to 1e-1")
       ->check(number())
       ->capture_default_str();
-  command.add_option("--threads", options.threads, "0: as many as there are")
+  command
+      .add_option("--threads", options.threads,
+                  "0: as many as there are; beside busy programs set OMP_WAIT_POLICY=passive")
       ->check(number([](double value) { return value >= 0 && value <= most_threads; },
                      fmt::format("a number of threads, 0 to {}", most_threads)))
       ->capture_default_str();

@@ -2,7 +2,7 @@
 // compression SKIN.obj LANDMARKS [--fine FINE.obj] [--json FILE]: the response matrix of that many landmarks spread
 // over a skin, interpolated to a finer skin of the same body where one is given: its singular values, and the frames of
 // its three forms in turns (setter, with the part of the product that compression puts there, and evaluation).
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -46,7 +46,8 @@ std::vector<Landmark> spread(const TriangleMesh& skin, Index count) {
 
 /// Those below 1e-8 of the largest are rounding.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& R) {
-  return Eigen::BDCSVD<Eigen::MatrixXd>(R.transpose() * R).singularValues().cwiseSqrt();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(R.transpose() * R, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues().reverse().cwiseMax(0).cwiseSqrt();
 }
 
 nlohmann::json measured(const Points& rest, const Eigen::MatrixXd& R, const Points& landmark_rest) {
