@@ -44,6 +44,23 @@ struct FloatPanels {
   }
 
  private:
+  /// One column of several frames. Each number of it is loaded once: compilers, given the choice, load it again for
+  /// every frame, as an operand of the multiply-add, and loads then take longer than arithmetic.
+  template <class B, std::size_t... kNumber>
+  static HWY_INLINE void add_column(const float* column, const Vector (&weight)[B::kFrames], Vector (&sum)[B::kSums],
+                                    std::index_sequence<kNumber...>) {
+    (add_number<B, kNumber>(column, weight, sum, std::make_index_sequence<B::kFrames>()), ...);
+  }
+
+  template <class B, std::size_t kNumber, std::size_t... kFrame>
+  static HWY_INLINE void add_number(const float* column, const Vector (&weight)[B::kFrames], Vector (&sum)[B::kSums],
+                                    std::index_sequence<kFrame...>) {
+    constexpr std::size_t c = kNumber / B::kVectors, v = kNumber % B::kVectors;
+    Vector number = hn::Load(Tag(), column + B::place(kNumber));
+    keep_in_register(number);
+    ((sum[B::sum(kFrame, c, v)] = hn::MulAdd(number, weight[kFrame], sum[B::sum(kFrame, c, v)])), ...);
+  }
+
   /// Columns [k, end) of a block. Its sums begin with the rest positions, are in `sums` between turns, and after the
   /// last column become positions.
   template <class B, class MotionOf, std::size_t... kSum, std::size_t... kFrame>
@@ -63,7 +80,11 @@ struct FloatPanels {
       column += kColumnNumbers;
       if constexpr (B::kInTurns) prefetch_block<B>(column + kAhead * kColumnNumbers);
       const Vector weight[] = {hn::Set(Tag(), frames[kFrame].weights[k])...};
-      ((sum[kSum] = hn::MulAdd(hn::Load(Tag(), column + B::place(kSum)), weight[B::frame(kSum)], sum[kSum])), ...);
+      if constexpr (B::kFrames == 1) {
+        ((sum[kSum] = hn::MulAdd(hn::Load(Tag(), column + B::place(kSum)), weight[0], sum[kSum])), ...);
+      } else {
+        add_column<B>(column, weight, sum, std::make_index_sequence<3 * B::kVectors>());
+      }
     }
     if (!B::kInTurns || end == matrix.places[panel].entries) {
       move_and_store_block<B>(sum, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,

@@ -135,6 +135,14 @@ HWY_INLINE void prefetch_block(const Number* from) {
   }
 }
 
+/// Compilers must have it in one, and treat it as changed.
+template <class V>
+HWY_INLINE void keep_in_register([[maybe_unused]] V& vector) {
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+  asm volatile("" : "+v"(vector.raw));
+#endif
+}
+
 /// How many columns (or pairs) before their turn. Asking past the end of a matrix does no harm.
 constexpr std::size_t kAhead = 3;
 

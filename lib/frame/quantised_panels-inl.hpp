@@ -26,7 +26,7 @@ HWY_INLINE IntVector add_pair_product(IntVector words, IntVector weights, IntVec
   const hn::RepartitionToNarrow<IntTag> pairs;
   IntVector unused = hn::Zero(IntTag());
   sum = hn::ReorderWidenMulAccumulate(IntTag(), hn::BitCast(pairs, words), hn::BitCast(pairs, weights), sum, unused);
-  asm volatile("" : "+v"(sum.raw));  // one by one: GCC would take many products first and run out of registers
+  keep_in_register(sum);  // one by one: GCC would take many products first and run out of registers
   return sum;
 #else
   const auto lower = [](IntVector v) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
