@@ -44,8 +44,8 @@ struct FloatPanels {
   }
 
  private:
-  /// One column of several frames. Each number of it is loaded once: compilers, given the choice, load it again for
-  /// every frame, as an operand of the multiply-add, and loads then take longer than arithmetic.
+  /// One column. Each number of it is loaded once for all frames: compilers, given the choice, load it again for every
+  /// frame, as an operand of the multiply-add, and loads then take longer than arithmetic.
   template <class B, std::size_t... kNumber>
   static HWY_INLINE void add_column(const float* column, const Vector (&weight)[B::kFrames], Vector (&sum)[B::kSums],
                                     std::index_sequence<kNumber...>) {
@@ -57,7 +57,7 @@ struct FloatPanels {
                                     std::index_sequence<kFrame...>) {
     constexpr std::size_t c = kNumber / B::kVectors, v = kNumber % B::kVectors;
     Vector number = hn::Load(Tag(), column + B::place(kNumber));
-    keep_in_register(number);
+    if constexpr (B::kFrames > 1) keep_in_register(number);
     ((sum[B::sum(kFrame, c, v)] = hn::MulAdd(number, weight[kFrame], sum[B::sum(kFrame, c, v)])), ...);
   }
 
@@ -80,11 +80,7 @@ struct FloatPanels {
       column += kColumnNumbers;
       if constexpr (B::kInTurns) prefetch_block<B>(column + kAhead * kColumnNumbers);
       const Vector weight[] = {hn::Set(Tag(), frames[kFrame].weights[k])...};
-      if constexpr (B::kFrames == 1) {
-        ((sum[kSum] = hn::MulAdd(hn::Load(Tag(), column + B::place(kSum)), weight[0], sum[kSum])), ...);
-      } else {
-        add_column<B>(column, weight, sum, std::make_index_sequence<3 * B::kVectors>());
-      }
+      add_column<B>(column, weight, sum, std::make_index_sequence<3 * B::kVectors>());
     }
     if (!B::kInTurns || end == matrix.places[panel].entries) {
       move_and_store_block<B>(sum, motion_of, targets, panel * kPanelWidth + shift, matrix.vertices,
