@@ -103,19 +103,21 @@ void add_product(const T* V, const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynam
 
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd>;
 
-/// C = A^T B; A and B without gaps between columns.
+/// C = A^T B.
 inline void transposed_product(const ConstMatrixRef& A, const ConstMatrixRef& B, Eigen::Ref<Eigen::MatrixXd> C) {
   const int m = static_cast<int>(A.cols()), n = static_cast<int>(B.cols()), k = static_cast<int>(A.rows());
-  const int ldc = static_cast<int>(C.outerStride());
+  const int lda = static_cast<int>(A.outerStride()), ldb = static_cast<int>(B.outerStride()),
+            ldc = static_cast<int>(C.outerStride());
   const double one = 1, zero = 0;
-  dgemm_("T", "N", &m, &n, &k, &one, A.data(), &k, B.data(), &k, &zero, C.data(), &ldc);
+  dgemm_("T", "N", &m, &n, &k, &one, A.data(), &lda, B.data(), &ldb, &zero, C.data(), &ldc);
 }
 
-/// The lower half of C = A^T A; A without gaps between columns.
+/// The lower half of C = A^T A.
 inline void gram_matrix(const ConstMatrixRef& A, Eigen::Ref<Eigen::MatrixXd> C) {
-  const int n = static_cast<int>(A.cols()), k = static_cast<int>(A.rows()), ldc = static_cast<int>(C.outerStride());
+  const int n = static_cast<int>(A.cols()), k = static_cast<int>(A.rows());
+  const int lda = static_cast<int>(A.outerStride()), ldc = static_cast<int>(C.outerStride());
   const double one = 1, zero = 0;
-  dsyrk_("L", "T", &n, &k, &one, A.data(), &k, &zero, C.data(), &ldc);
+  dsyrk_("L", "T", &n, &k, &one, A.data(), &lda, &zero, C.data(), &ldc);
 }
 
 /// y -= A x, A of `rows` by `columns`, its columns `stride` apart; the numbers of x `step` apart.

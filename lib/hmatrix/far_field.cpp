@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <skinbem/kernels/kelvin_batch.hpp>
-#include <skinbem/mesh/adjacency.hpp>
 
 namespace skinbem {
 namespace {
@@ -45,24 +45,6 @@ std::vector<std::vector<std::int32_t>> representatives(const TriangleMesh& mesh,
     result[c] = spread_out(mesh.vertices, tree.order(), candidates);
   }
   return result;
-}
-
-struct Partner {
-  std::int32_t cluster;
-  double angle;  ///< solid, as the cluster that has it sees it
-};
-
-/// Everything that is far from a cluster: its own partners and its ancestors'.
-std::vector<Partner> partners_of(std::int32_t cluster, const std::vector<Cluster>& clusters,
-                                 const BlockPartition& partition, const std::vector<double>& areas) {
-  std::vector<Partner> partners;
-  for (std::int32_t c = cluster; c >= 0; c = clusters[c].parent) {
-    for (const std::int32_t far : partition.far[c]) {
-      const double distance2 = clusters[cluster].points.squaredExteriorDistance(clusters[far].points);
-      partners.push_back({far, areas[far] / distance2});
-    }
-  }
-  return partners;
 }
 
 }  // namespace
@@ -111,46 +93,81 @@ const double* PointKernel<Kernel>::values(std::span<const std::int32_t> points,
   return result.data();
 }
 
-std::vector<FarSamples> sample_far_fields(const TriangleMesh& mesh, const ClusterTree& tree,
-                                          const BlockPartition& partition, Index samples_per_cluster) {
-  const auto& clusters = tree.clusters();
-  const std::vector<std::vector<std::int32_t>> represent = representatives(mesh, tree);
-  const IndexLists triangles = triangles_around_vertices(mesh);
+FarSampler::FarSampler(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition)
+    : tree_(tree),
+      partition_(partition),
+      triangles_(triangles_around_vertices(mesh)),
+      representatives_(representatives(mesh, tree)) {
   const Eigen::VectorXd area_of_vertex = vertex_areas(mesh);
-  std::vector<double> areas(clusters.size());
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    for (std::int32_t k = clusters[c].begin; k < clusters[c].end; ++k) areas[c] += area_of_vertex[tree.order()[k]];
+  for (const Cluster& cluster : tree.clusters()) {
+    double& area = areas_.emplace_back(0);
+    for (std::int32_t k = cluster.begin; k < cluster.end; ++k) area += area_of_vertex[tree.order()[k]];
   }
-  std::vector<FarSamples> samples(clusters.size());
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    FarSamples& own = samples[c];
-    const std::vector<Partner> partners = partners_of(std::int32_t(c), clusters, partition, areas);
-    double angle = 0;
-    for (const Partner& partner : partners) angle += partner.angle;
-    double wanted = 0.5, area = 0;  // of samples, rounded; of the partners that they stand for
-    std::size_t taken = 0;
-    for (const Partner& partner : partners) {
-      wanted += static_cast<double>(samples_per_cluster) * partner.angle / angle;
-      area += areas[partner.cluster];
-      if (static_cast<std::size_t>(wanted) == taken) continue;  // the next one's samples stand for it too
-      const auto& spread = represent[partner.cluster];
-      const std::size_t count = std::min(spread.size(), static_cast<std::size_t>(wanted) - taken);
-      own.places.insert(own.places.end(), spread.begin(), spread.begin() + Index(count));
-      own.area_root.insert(own.area_root.end(), count, std::sqrt(area / static_cast<double>(count)));
-      taken = static_cast<std::size_t>(wanted);
-      area = 0;
-    }
-    for (std::size_t k = 0; k < own.places.size(); ++k) {  // in turn, or an edge would show one of its faces only
-      const auto around = triangles[tree.order()[own.places[k]]];
-      own.triangles.push_back(around[k % around.size()]);
-    }
-    while (own.places.size() % kPanel != 0) {
-      own.places.push_back(own.places.back());
-      own.triangles.push_back(own.triangles.back());
-      own.area_root.push_back(0);
+}
+
+/// Everything that is far from a cluster: its own partners and its ancestors'.
+std::vector<FarSampler::Partner> FarSampler::partners_of(std::int32_t cluster) const {
+  const auto& clusters = tree_.clusters();
+  std::vector<Partner> partners;
+  for (std::int32_t c = cluster; c >= 0; c = clusters[c].parent) {
+    for (const std::int32_t far : partition_.far[c]) {
+      const double distance2 = clusters[cluster].points.squaredExteriorDistance(clusters[far].points);
+      partners.push_back({far, areas_[far] / distance2});
     }
   }
-  return samples;
+  return partners;
+}
+
+FarSamples FarSampler::samples(std::int32_t cluster, Index count) const {
+  FarSamples result;
+  const std::vector<Partner> partners = partners_of(cluster);
+  if (partners.empty()) return result;
+  add_spread_out(partners, count, result);
+  add_at_random(partners, result);
+  for (std::size_t k = 0; k < result.places.size(); ++k) {  // in turn, or an edge would show one of its faces only
+    const auto around = triangles_[tree_.order()[result.places[k]]];
+    result.triangles.push_back(around[k % around.size()]);
+  }
+  return result;
+}
+
+void FarSampler::add_spread_out(const std::vector<Partner>& partners, Index count, FarSamples& samples) const {
+  double angle = 0;
+  for (const Partner& partner : partners) angle += partner.angle;
+  double wanted = 0.5, area = 0;  // of samples, rounded; of the partners that they stand for
+  std::size_t taken = 0;
+  for (const Partner& partner : partners) {
+    wanted += static_cast<double>(count) * partner.angle / angle;
+    area += areas_[partner.cluster];
+    if (static_cast<std::size_t>(wanted) == taken) continue;  // the next one's samples stand for it too
+    const auto& spread = representatives_[partner.cluster];
+    const std::size_t own = std::min(spread.size(), static_cast<std::size_t>(wanted) - taken);
+    samples.places.insert(samples.places.end(), spread.begin(), spread.begin() + Index(own));
+    samples.area_root.insert(samples.area_root.end(), own, std::sqrt(area / static_cast<double>(own)));
+    taken = static_cast<std::size_t>(wanted);
+    area = 0;
+  }
+  while (samples.places.size() % kPanel != 0) {
+    samples.places.push_back(samples.places.back());
+    samples.area_root.push_back(0);
+  }
+}
+
+/// One in each of kPanel equal parts of the partners' solid angle.
+void FarSampler::add_at_random(const std::vector<Partner>& partners, FarSamples& samples) const {
+  std::minstd_rand random(static_cast<unsigned>(partners.front().cluster + 1));
+  double angle = 0;
+  for (const Partner& partner : partners) angle += partner.angle;
+  const double part = angle / double(kPanel);
+  std::size_t p = 0;
+  double sum = partners[0].angle;
+  for (std::size_t k = 0; k < kPanel; ++k) {
+    const double at = (double(k) + double(random()) / double(random.max())) * part;
+    while (sum < at && p + 1 < partners.size()) sum += partners[++p].angle;
+    const Cluster& far = tree_.clusters()[partners[p].cluster];
+    samples.places.push_back(far.begin + std::int32_t(random() % unsigned(far.size())));
+    samples.area_root.push_back(std::sqrt(areas_[partners[p].cluster] * part / partners[p].angle));
+  }
 }
 
 template class PointKernel<Kelvin<double>>;

@@ -7,6 +7,7 @@
 
 #include <skinbem/base/aligned_buffer.hpp>
 #include <skinbem/hmatrix/cluster_tree.hpp>
+#include <skinbem/mesh/adjacency.hpp>
 #include <skinbem/operator/collocation.hpp>
 
 namespace skinbem {
@@ -37,17 +38,40 @@ class PointKernel {
   Kernel kernel_;
 };
 
-/// Some vertices of a cluster's far field, each standing for `area_root`^2 of its surface.
+/// Some vertices of a cluster's far field, each standing for `area_root`^2 of its surface. The last kPanel of them are
+/// drawn at random, to check what was made from the others.
 struct FarSamples {
   std::vector<std::int32_t> places;     ///< a multiple of kPanel; those that fill up have no weight
   std::vector<std::int32_t> triangles;  ///< one at each
   std::vector<double> area_root;
 };
 
-/// For every cluster that has a far field, about `samples_per_cluster` samples of it: of its own and its ancestors'
-/// partners, of each as many as befit the solid angle that it fills. At most 32 of one.
-std::vector<FarSamples> sample_far_fields(const TriangleMesh& mesh, const ClusterTree& tree,
-                                          const BlockPartition& partition, Index samples_per_cluster);
+/// What clusters see of their far fields: vertices of their own and their ancestors' partners, of each as many as befit
+/// the solid angle that it fills.
+class FarSampler {
+ public:
+  /// All of them are kept as references.
+  FarSampler(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition);
+
+  /// About `count` samples that are spread out, at most 32 of one partner, and those that check. Nothing where there is
+  /// no far field. The same for the same arguments.
+  FarSamples samples(std::int32_t cluster, Index count) const;
+
+ private:
+  struct Partner {
+    std::int32_t cluster;
+    double angle;  ///< solid, as the cluster that has it sees it
+  };
+  std::vector<Partner> partners_of(std::int32_t cluster) const;
+  void add_spread_out(const std::vector<Partner>& partners, Index count, FarSamples& samples) const;
+  void add_at_random(const std::vector<Partner>& partners, FarSamples& samples) const;
+
+  const ClusterTree& tree_;
+  const BlockPartition& partition_;
+  IndexLists triangles_;
+  std::vector<std::vector<std::int32_t>> representatives_;
+  std::vector<double> areas_;  ///< of clusters
+};
 
 extern template class PointKernel<Kelvin<double>>;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <tuple>
@@ -27,7 +28,16 @@ MatrixMap scratch(Use use, Index rows, Index columns) {
   return {numbers.data(), rows, columns};
 }
 
-/// Builds one cluster's bases. A matrix's rows are the equations of the samples, weighted.
+/// A basis, and what it misses of the field at samples that it was not made from: Frobenius norm, relative.
+struct CheckedBasis {
+  ClusterBasis basis;
+  double missed = 0;
+};
+
+/// Where a basis misses more than so many tolerances, it is made anew.
+constexpr double too_much = 2;
+
+/// Builds one cluster's bases. A matrix's rows are the equations of the samples, weighted; the last of them check.
 template <class Kernel>
 class BasisMaker {
  public:
@@ -43,23 +53,22 @@ class BasisMaker {
         tolerance_(tolerance),
         equations_(Index(samples.places.size()) * components) {}
 
-  ClusterBasis row_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
+  CheckedBasis row_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
     const std::vector<Dof> candidates = cluster.is_leaf() ? vertex_dofs(cluster) : skeletons(cluster, bases);
     const MatrixMap A = field_at(candidates);
-    MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
-    lapack::gram_matrix(A, gram);
-    ColumnSelection selection = select_columns(gram, tolerance_);
+    ColumnSelection selection = decompose(A);
+    const double missed = missed_of(A, A, selection.columns, selection.weights);
     if (cluster.is_leaf()) selection.weights = fill_up(cluster, selection.weights);
-    return basis(candidates, std::move(selection));
+    return {basis(candidates, std::move(selection)), missed};
   }
 
-  ClusterBasis column_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
+  CheckedBasis column_basis(const Cluster& cluster, const std::vector<ClusterBasis>& bases) const {
     if (cluster.is_leaf()) return leaf_columns(cluster);
     const std::vector<Dof> candidates = skeletons(cluster, bases);
     const MatrixMap A = field_of(candidates);
-    MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
-    lapack::gram_matrix(A, gram);
-    return by_components(basis(candidates, select_columns(gram, tolerance_)));
+    ColumnSelection selection = decompose(A);
+    const double missed = missed_of(A, A, selection.columns, selection.weights);
+    return {by_components(basis(candidates, std::move(selection))), missed};
   }
 
  private:
@@ -100,26 +109,25 @@ class BasisMaker {
   }
   /// From dipoles on two triangles a vertex, or on all where these miss too much: a vertex apart from the others of its
   /// leaf needs all of its own. Tight tolerances always need all.
-  ClusterBasis leaf_columns(const Cluster& leaf) const {
-    constexpr double tight = 1e-5, too_much = 2;
+  CheckedBasis leaf_columns(const Cluster& leaf) const {
+    constexpr double tight = 1e-5;
     if (tolerance_ >= tight) {
       FittedDipoles few = dipoles_like_hats(leaf, dipole_dofs(leaf, Around::two_triangles));
-      if (few.missed <= too_much * tolerance_) return std::move(few.basis);
+      if (few.misfit <= too_much * tolerance_) return std::move(few.dipoles);
     }
-    return dipoles_like_hats(leaf, dipole_dofs(leaf, Around::all_triangles)).basis;
+    return dipoles_like_hats(leaf, dipole_dofs(leaf, Around::all_triangles)).dipoles;
   }
 
   struct FittedDipoles {
-    ClusterBasis basis;
-    double missed;  ///< Frobenius norm, relative, of what they miss of the hat functions' field at the samples
+    CheckedBasis dipoles;
+    double misfit;  ///< as CheckedBasis::missed, at the samples that they are made from
   };
   /// There are many more dipoles around a leaf than it takes: they are chosen by fewer equations, and only what those
   /// chosen weigh is found from all of them.
   FittedDipoles dipoles_like_hats(const Cluster& leaf, const std::vector<Dof>& dipoles) const {
     const MatrixMap A = field_of(dipoles);
-    const MatrixMap fewer = random_sums(A);
     MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
-    lapack::gram_matrix(fewer, gram);
+    lapack::gram_matrix(random_sums(A), gram);
     const std::vector<std::int32_t> chosen = select_columns(gram, tolerance_).columns;
 
     MatrixMap kept = scratch(Use::kept, equations_, Index(chosen.size()));
@@ -130,17 +138,35 @@ class BasisMaker {
     }
     const MatrixMap hats = field_of_hats(leaf);
     MatrixMap products = scratch(Use::gram, kept.cols() + hats.cols(), kept.cols());
-    lapack::gram_matrix(kept, products.topRows(kept.cols()));
+    lapack::gram_matrix(fitted(kept), products.topRows(kept.cols()));
     const auto of_hats = products.bottomRows(hats.cols());
-    lapack::transposed_product(hats, kept, of_hats);
+    lapack::transposed_product(fitted(hats), fitted(kept), of_hats);
     ColumnSelection all = select_columns(products, 0);
     const Eigen::MatrixXd weights = all.weights.bottomRows(hats.cols());
-    double fitted = 0;  // least squares: |hats|^2 - |what is missed|^2
+    double explained = 0;  // least squares: |hats|^2 - |what is missed|^2
     for (std::size_t k = 0; k < all.columns.size(); ++k)
-      fitted += weights.col(Index(k)).dot(of_hats.col(all.columns[k]));
-    const double whole = hats.squaredNorm();
+      explained += weights.col(Index(k)).dot(of_hats.col(all.columns[k]));
+    const double whole = fitted(hats).squaredNorm(), missed = missed_of(hats, kept, all.columns, weights);
     all.weights = fill_up(leaf, weights);
-    return {by_components(basis(candidates, std::move(all))), std::sqrt(std::max(0.0, whole - fitted) / whole)};
+    return {{by_components(basis(candidates, std::move(all))), missed},
+            std::sqrt(std::max(0.0, whole - explained) / whole)};
+  }
+
+  /// The equations that bases are made from, and those that check them.
+  auto fitted(const MatrixMap& A) const { return A.topRows(equations_ - checks); }
+  static auto checking(const MatrixMap& A) { return A.bottomRows(checks); }
+  ColumnSelection decompose(const MatrixMap& A) const {
+    MatrixMap gram = scratch(Use::gram, A.cols(), A.cols());
+    lapack::gram_matrix(fitted(A), gram);
+    return select_columns(gram, tolerance_);
+  }
+  /// What the chosen columns of `by` miss of the fields `of` where these are checked.
+  static double missed_of(const MatrixMap& of, const MatrixMap& by, const std::vector<std::int32_t>& chosen,
+                          const Eigen::Ref<const Eigen::MatrixXd>& weights) {
+    Eigen::MatrixXd skeleton(checks, Index(chosen.size()));
+    for (std::size_t k = 0; k < chosen.size(); ++k) skeleton.col(Index(k)) = checking(by).col(chosen[k]);
+    const Eigen::MatrixXd missed = checking(of) - skeleton * weights.transpose();
+    return missed.norm() / std::max(checking(of).norm(), std::numeric_limits<double>::min());
   }
 
   static ClusterBasis basis(const std::vector<Dof>& candidates, ColumnSelection selection) {
@@ -225,15 +251,15 @@ class BasisMaker {
   /// and Woodruff, Low rank approximation and regression in input sparsity time, 2013).
   MatrixMap random_sums(const MatrixMap& A) const {
     constexpr Index panel = components * Index(kPanel);
-    const Index sums = std::max(Index(1), equations_ / panel / 2) * panel;
+    const Index equations = fitted(A).rows(), sums = std::max(Index(1), equations / panel / 2) * panel;
     MatrixMap S = scratch(Use::sums, sums, A.cols());
     S.setZero();
     std::minstd_rand random;
-    Eigen::VectorXd sign(equations_);
+    Eigen::VectorXd sign(equations);
     for (double& s : sign) s = random() < random.max() / 2 ? -1 : 1;
     for (Index k = 0; k < A.cols(); ++k) {
-      for (Index first = 0; first < equations_; first += sums) {
-        const Index count = std::min(sums, equations_ - first);
+      for (Index first = 0; first < equations; first += sums) {
+        const Index count = std::min(sums, equations - first);
         S.col(k).head(count) += sign.segment(first, count).cwiseProduct(A.col(k).segment(first, count));
       }
     }
@@ -251,6 +277,7 @@ class BasisMaker {
   }
 
   static constexpr std::size_t entries = components * components;
+  static constexpr Index checks = components * Index(kPanel);  ///< the last equations
   const ClusterTree& tree_;
   const IndexLists& triangles_;
   const Collocation<Kernel>& collocation_;
@@ -303,18 +330,29 @@ template <class Kernel>
 NestedBases make_nested_bases(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition,
                               const Collocation<Kernel>& collocation, const PointKernel<Kernel>& kernel,
                               const BasisOptions& options, const std::function<void(double)>& done) {
-  const std::vector<FarSamples> samples = sample_far_fields(mesh, tree, partition, options.samples);
+  const FarSampler sampler(mesh, tree, partition);
   const IndexLists triangles = triangles_around_vertices(mesh);
   const std::size_t count = tree.clusters().size();
   NestedBases bases{std::vector<ClusterBasis>(count), std::vector<ClusterBasis>(count)};
+  const auto misses_too_much = [&](const CheckedBasis& made) { return made.missed > too_much * options.tolerance; };
+  const auto make_bases = [&](std::int32_t c) {
+    const FarSamples samples = sampler.samples(c, options.samples);
+    if (samples.places.empty()) return;
+    const Cluster& cluster = tree.clusters()[c];
+    const BasisMaker<Kernel> maker(tree, triangles, collocation, kernel, samples, options.tolerance);
+    CheckedBasis rows = maker.row_basis(cluster, bases.rows), columns = maker.column_basis(cluster, bases.columns);
+    if (misses_too_much(rows) || misses_too_much(columns)) {
+      const FarSamples more = sampler.samples(c, 2 * options.samples);
+      const BasisMaker<Kernel> careful(tree, triangles, collocation, kernel, more, options.tolerance);
+      if (misses_too_much(rows)) rows = careful.row_basis(cluster, bases.rows);
+      if (misses_too_much(columns)) columns = careful.column_basis(cluster, bases.columns);
+    }
+    bases.rows[c] = std::move(rows.basis);
+    bases.columns[c] = std::move(columns.basis);
+  };
   for (std::size_t level = tree.levels().size() - 1; level-- > 0;) {
 #pragma omp parallel for schedule(dynamic, 1)
-    for (std::int32_t c = tree.levels()[level]; c < tree.levels()[level + 1]; ++c) {
-      if (samples[c].places.empty()) continue;
-      const BasisMaker<Kernel> maker(tree, triangles, collocation, kernel, samples[c], options.tolerance);
-      bases.rows[c] = maker.row_basis(tree.clusters()[c], bases.rows);
-      bases.columns[c] = maker.column_basis(tree.clusters()[c], bases.columns);
-    }
+    for (std::int32_t c = tree.levels()[level]; c < tree.levels()[level + 1]; ++c) make_bases(c);
     done(1 - double(tree.levels()[level]) / double(count));
   }
   return bases;

@@ -47,8 +47,9 @@ struct BasisOptions {
   Index samples = 128;
 };
 
-/// Bottom-up, all clusters of a level in parallel; the same bits for any number of threads. Calls done(fraction) after
-/// each level.
+/// Bottom-up, all clusters of a level in parallel; the same bits for any number of threads. Each basis is checked
+/// against samples that it was not made from, and made anew from twice as many where it misses more than twice the
+/// tolerance of them. Calls done(fraction) after each level.
 template <class Kernel>
 NestedBases make_nested_bases(const TriangleMesh& mesh, const ClusterTree& tree, const BlockPartition& partition,
                               const Collocation<Kernel>& collocation, const PointKernel<Kernel>& kernel,
