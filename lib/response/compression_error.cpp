@@ -46,7 +46,14 @@ CompressionDefects::CompressionDefects(const Collocation<Kelvin<double>>& colloc
 
 Eigen::MatrixXd CompressionDefects::of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& L,
                                        const Eigen::MatrixXd& G) const {
-  Eigen::MatrixXd left = rows_.multiply(Y) + B_rows_ * L - rows_.pick(G);
+  return as_displacements(rows_.multiply(Y) + B_rows_ * L - rows_.pick(G));
+}
+
+Eigen::MatrixXd CompressionDefects::of_compression(const Eigen::MatrixXd& V, const Eigen::MatrixXd& HV) const {
+  return as_displacements(rows_.multiply(V) - rows_.pick(HV));
+}
+
+Eigen::MatrixXd CompressionDefects::as_displacements(Eigen::MatrixXd left) const {
   for (std::size_t k = 0; k < rows_.vertices().size(); ++k) {
     auto own = left.middleRows<3>(3 * Index(k));
     own = (rows_.own_block(k).inverse() * own).eval();

@@ -27,12 +27,17 @@ class CompressionDefects {
   /// What is left of the vertices' equations, each solved for the vertex's own displacement: 3 #vertices by #columns,
   /// in the unit of Y. L = B^T Y.
   Eigen::MatrixXd of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& L, const Eigen::MatrixXd& G) const;
+  /// The share of these that compression has in them, whose H V is `HV`; the rest is the iteration's.
+  Eigen::MatrixXd of_compression(const Eigen::MatrixXd& V, const Eigen::MatrixXd& HV) const;
 
   /// The largest root mean square of a column of such defects. A vertex counts at most as three times their median: one
   /// in a steep place, beside a landmark, is no measure of the others.
   static double size(const Eigen::MatrixXd& defects);
 
  private:
+  /// Each vertex's equations solved for its own displacement.
+  Eigen::MatrixXd as_displacements(Eigen::MatrixXd left) const;
+
   Eigen::MatrixXd answers_;
   ExactRows rows_;
   Eigen::MatrixXd B_rows_;  ///< those rows of B

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/base/stopwatch.hpp>
@@ -64,6 +65,7 @@ struct ResponseModel::State {
   ResponseSummary summary;
   double quadrature_error = 0;
   double compressed_to;                       ///< tolerance, where H is compressed
+  double residual = 0;                        ///< at which a column has converged there
   std::optional<CompressionDefects> defects;  ///< where H is compressed, from the first solve on
   bool answered = false;                      ///< random defects, by this H
 
@@ -97,22 +99,44 @@ struct ResponseModel::State {
 
   void make_compressed() {
     Stopwatch watch;
-    solver = make_iterative_solver(
-        mesh, collocation, B, IterativeOptions::for_tolerance(compressed_to, mesh.vertex_count()), options.progress);
+    const IterativeOptions iterative = iterative_options();
+    solver = make_iterative_solver(mesh, collocation, B, iterative, options.progress);
+    residual = iterative.residual;
     answered = false;
     summary.assemble_seconds += watch.lap();
   }
 
+  /// Compressed anew, in the next better precision: a body so loose shows rounding errors, too.
+  IterativeOptions iterative_options() const {
+    const IterativeOptions at_first = IterativeOptions::for_tolerance(options.tolerance, mesh.vertex_count());
+    if (compressed_to == options.tolerance) return at_first;
+    IterativeOptions anew = IterativeOptions::for_tolerance(compressed_to, mesh.vertex_count());
+    anew.single = anew.single && at_first.compression.packed;
+    return anew;
+  }
   bool compressed() const { return summary.prediction.solver == Solver::hmatrix; }
+
+  /// Iterates to a smaller residual, by `factor`; false where that is no longer possible.
+  bool iterate_on(double factor) {
+    constexpr double most = 1e-2;  // of what befits the compression
+    if (residual <= most * iterative_options().residual) return false;
+    residual *= factor;
+    solver->set_residual(residual);
+    return true;
+  }
 
   /// Compresses less, by `factor`; false where that is no longer possible, or would not fit into memory.
   bool tighten(double factor) {
     constexpr double most = 1e-2;  // of the tolerance
     if (!compressed() || compressed_to <= std::max(finest_compression, most * options.tolerance)) return false;
-    const double next = std::max(compressed_to * factor, finest_compression);
+    const double before = std::exchange(compressed_to, std::max(compressed_to * factor, finest_compression));
+    constexpr double in_double = 1e-5;
+    const double tolerance = iterative_options().single ? compressed_to : std::min(compressed_to, in_double);
     const std::size_t limit = options.memory_limit > 0 ? options.memory_limit : available_memory();
-    if (predict_solver(Solver::hmatrix, mesh, next, omp_get_max_threads()).bytes > limit) return false;
-    compressed_to = next;
+    if (predict_solver(Solver::hmatrix, mesh, tolerance, omp_get_max_threads()).bytes > limit) {
+      compressed_to = before;
+      return false;
+    }
     solver.reset();
     return true;
   }
@@ -228,13 +252,13 @@ struct ResponseModel::State {
     return lu.solve(Eigen::MatrixXd::Identity(n + 6, n));
   }
 
-  /// After a change of landmarks: estimates the error of R, and compresses less where it is too large. Throws
+  /// After a change of landmarks: estimates the error of R, and does better where it is too large. Throws
   /// Error(numerical) where that does not help.
   void settle() {
-    constexpr double aim = 2, allowed = 5, hopeless = 10;  // times the tolerance
+    constexpr double hopeless = 10;  // times the tolerance
     keep_names_and_estimate();
-    while (summary.estimated_error > allowed * options.tolerance &&
-           tighten(std::clamp(aim * options.tolerance / summary.estimated_error, 0.05, 0.3))) {
+    while (compressed() && summary.estimated_error > allowed_error() && do_better()) {
+      summary.residual = 0;
       greens = solve(landmarks);
       summary.estimated_error = estimated_error();
     }
@@ -248,12 +272,30 @@ struct ResponseModel::State {
     }
   }
 
+  /// Of the estimate, which is twice the error and more; five tolerances where it is mostly the rounding of 16 bits,
+  /// which differs from vertex to vertex and to which a body hardly answers.
+  double allowed_error() const { return (iterative_options().compression.packed ? 5 : 1.5) * options.tolerance; }
+
+  /// Iterates on where the compression is good enough, else compresses less; false where neither is possible.
+  bool do_better() {
+    const Eigen::MatrixXd X = all_X();
+    const double compression = estimated_error(defects->of_compression(X, solver->apply_H(X)));
+    const double room = (allowed_error() - compression) / summary.estimated_error;  // for the iteration's share
+    return (room > 0 && iterate_on(std::clamp(room / 2, 0.02, 0.3))) ||
+           tighten(std::clamp(options.tolerance / compression, 0.05, 0.3));
+  }
+
   double estimated_error() const {
     if (!compressed()) return quadrature_error + summary.residual;
     if (!enough_landmarks()) return 0;
-    const Eigen::MatrixXd X = all_X(), solution = coefficients(X);
-    Eigen::MatrixXd left(greens.front().defect.rows(), X.cols());
+    Eigen::MatrixXd left(greens.front().defect.rows(), 3 * Index(greens.size()));
     for (std::size_t k = 0; k < greens.size(); ++k) left.middleCols<3>(3 * Index(k)) = greens[k].defect;
+    return estimated_error(left);
+  }
+
+  /// Where so much is left of the equations of all landmarks.
+  double estimated_error(const Eigen::MatrixXd& left) const {
+    const Eigen::MatrixXd X = all_X(), solution = coefficients(X);
     const Eigen::MatrixXd& answers = defects->answers();
     const Eigen::MatrixXd coefficients_of_answers = solution * measure(answers);
     const Eigen::MatrixXd held =

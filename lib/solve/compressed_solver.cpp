@@ -61,6 +61,8 @@ class CompressedSolver final : public NeumannSolver {
     return result;
   }
 
+  void set_residual(double residual) override { gmres_.tolerance = residual; }
+
   Eigen::MatrixXd random_defects() const override {
     constexpr int probes = 3;
     const std::vector<std::int32_t>& order = H_.tree().order();
@@ -148,7 +150,7 @@ IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertice
   options.compression.samples = tolerance >= 1e-4 ? 128 : tolerance >= 1e-5 ? 256 : 448;
   options.single = tolerance >= 2e-5;
   options.residual = std::min(1e-3, tolerance);
-  options.compression.packed = tolerance >= 1e-4;
+  options.compression.packed = tolerance >= 1e-4 && vertices > 8000;  // below, memory is no concern
   return options;
 }
 

@@ -28,6 +28,8 @@ class NeumannSolver {
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary = nullptr) const = 0;
   /// H times V, as the solver has it.
   virtual Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const = 0;
+  /// Iterative: the residual at which a column has converged from now on. Nothing for a dense solver.
+  virtual void set_residual(double) {}
   /// Compressed: right-hand sides (3N by some) that are random defects of each vertex's equations, solved for its own
   /// displacement, of size 1 and alike within a leaf of the tree as those of compression are. Their solutions tell what
   /// the defects that are left may do. Nothing for a dense solver.

@@ -26,9 +26,10 @@ SolverPrediction predict_hmatrix(const TriangleMesh& mesh, double tolerance, dou
   const double n = static_cast<double>(mesh.vertex_count());
   const IterativeOptions options = IterativeOptions::for_tolerance(tolerance, mesh.vertex_count());
   const double digits = -std::log10(tolerance);
-  // measured on the leg of 10,000 vertices, one thread, 1e-2 to 1e-7: 2.7, 3.1, 3.7 (2e-4), 3.8 s in 16 bits, 6.2 in
-  // single, 10.7, 15.7, 18.6 in double precision; grows by a fifth of a power: iterations and levels (docs/scaling.md)
-  const double for_numbers = options.compression.packed ? 1 : options.single ? 1.4 : 3;
+  // measured on the leg of 10,000 vertices, one thread, 1e-2 to 1e-7: 2.7, 3.1, 3.7 (2e-4), 3.8 s from 128 samples of
+  // a cluster, 6.2 from 256, 10.7, 15.7, 18.6 in double precision; grows by a fifth of a power: iterations and levels
+  // (docs/scaling.md)
+  const double for_numbers = options.compression.samples <= 128 ? 1 : options.single ? 1.4 : 3;
   const double seconds_per_vertex = for_numbers * (2e-4 + 5e-5 * digits) * std::pow(n / 1e4, 0.2);
   const double blocks_of_the_basis = 4 * digits, columns = 18;
   const double schwarz = 3 * n * 3 * 128 * 2;

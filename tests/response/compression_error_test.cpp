@@ -88,6 +88,19 @@ TEST(CompressionDefects, AreWhatAVertexLacks) {
   EXPECT_LE((defects.of(Y, L, wrong).array() - 0.01).abs().maxCoeff(), tolerance::invariance);
 }
 
+/// Compression has its share in what is left; the iteration has the rest.
+TEST(CompressionDefects, TellWhatCompressionHasOfThem) {
+  const Ellipsoid body;
+  const Eigen::MatrixXd V = Eigen::MatrixXd::Random(body.B.rows(), 4), answers = Eigen::MatrixXd::Random(V.rows(), 3);
+  const CompressionDefects defects(body.collocation, body.B, answers);
+  Eigen::MatrixXd HV = body.H * V;
+  EXPECT_LE(CompressionDefects::size(defects.of_compression(V, HV)), tolerance::invariance);
+  for (Index v = 0; v < body.mesh.vertex_count(); ++v) {
+    HV.middleRows<3>(3 * v) -= body.H.block<3, 3>(3 * v, 3 * v) * Eigen::MatrixXd::Constant(3, 4, 0.01);
+  }
+  EXPECT_LE((defects.of_compression(V, HV).array() - 0.01).abs().maxCoeff(), tolerance::invariance);
+}
+
 /// The tip of a body that bends is looked at more often than its middle.
 TEST(CompressionDefects, AreLookedForWhereTheBodyMoves) {
   const Ellipsoid body;
