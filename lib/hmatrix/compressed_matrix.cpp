@@ -174,19 +174,12 @@ void CompressedMatrix<T>::set_diagonal() {
 /// Of the worst of the vertices whose own block is close to singular, and of their neighbours, whose errors they see.
 template <class T>
 void CompressedMatrix<T>::keep_exact_rows(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation) {
-  constexpr double close_to_singular = 1.0 / 30;  // 1 / |D^-1|; a flat place has 0.3
-  constexpr std::size_t most_vertices = 64;
-  std::vector<std::pair<double, std::int32_t>> found;
-  for (std::size_t place = 0; place < diagonal_.size(); ++place) {
-    const double distance = std::fmax(0, 1 / diagonal_[place].inverse().norm());  // 0 where it is not a number
-    if (distance < close_to_singular) found.push_back({distance, tree_.order()[place]});
-  }
+  const auto found = close_to_singular(diagonal_.size(), [&](std::size_t place) { return diagonal_[place]; });
   if (found.empty()) return;
-  std::sort(found.begin(), found.end());
-  found.resize(std::min(found.size(), most_vertices));
   const IndexLists neighbours = neighbours_of_vertices(mesh);
   std::vector<bool> wanted(mesh.vertex_count());
-  for (const auto& [distance, vertex] : found) {
+  for (const std::size_t place : found) {
+    const std::int32_t vertex = tree_.order()[place];
     wanted[vertex] = true;
     for (const std::int32_t neighbour : neighbours[vertex]) wanted[neighbour] = true;
   }

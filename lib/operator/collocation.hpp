@@ -51,6 +51,9 @@ class Collocation {
 
   Index node_count() const { return static_cast<Index>(vertices_.size()); }
   const Kernel& kernel() const { return integral_.kernel(); }
+  /// The same to another tolerance (QuadratureOptions::tolerance).
+  Collocation with_tolerance(double tolerance) const;
+  double tolerance() const { return tolerance_; }
 
   /// The double layer's matrix H of c u + int T u dS, dense, square: off the diagonal int N_l T(x_k, .) dS, diagonal
   /// blocks by rigid translation, so that H 1 = 0 (and free term and principal value never appear). For an exterior
@@ -106,6 +109,7 @@ class Collocation {
   IndexLists triangles_of_vertex_;
   std::vector<std::int32_t> order_;  ///< vertices along a space-filling curve
   double scale_;  ///< a power of two, so that scaling is exact: the kernels' batches work near unit length
+  double tolerance_;
   ElementIntegral<Kernel> integral_;
   bool single_;  ///< sums in float: where the tolerance is at least ten times their error
 };

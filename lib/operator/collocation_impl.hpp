@@ -59,8 +59,9 @@ template <class Kernel>
 Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel, const QuadratureOptions& options)
     : triangles_of_vertex_(triangles_around_vertices(mesh)),
       scale_(unit_scale(mesh)),
-      integral_(kernel, std::max(smallest_tolerance, options.tolerance / 2)),
-      single_(options.tolerance >= 1e-5) {
+      tolerance_(options.tolerance),
+      integral_(kernel, std::max(smallest_tolerance, tolerance_ / 2)),
+      single_(tolerance_ >= 1e-5) {
   vertices_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;
   triangles_.resize(mesh.triangle_count());
@@ -75,6 +76,15 @@ Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel,
     sources_.emplace_back(vertices_[v[0]], vertices_[v[1]], vertices_[v[2]]);
   }
   order_ = detail::morton_order(vertices_);
+}
+
+template <class Kernel>
+Collocation<Kernel> Collocation<Kernel>::with_tolerance(double tolerance) const {
+  Collocation other = *this;
+  other.tolerance_ = tolerance;
+  other.integral_ = ElementIntegral<Kernel>(kernel(), std::max(smallest_tolerance, tolerance / 2));
+  other.single_ = tolerance >= 1e-5;
+  return other;
 }
 
 /// Each with the first of its vertices that is asked for. `slot_of` is by vertex, -1 for those that are not.

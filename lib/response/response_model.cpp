@@ -11,6 +11,7 @@
 
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/base/stopwatch.hpp>
+#include <skinbem/hmatrix/exact_rows.hpp>
 #include <skinbem/mesh/validate.hpp>
 #include <skinbem/response/compression_error.hpp>
 #include <skinbem/response/landmark_patch.hpp>
@@ -86,10 +87,12 @@ struct ResponseModel::State {
     Stopwatch watch;
     AssemblyCounts counts;
     RowMajorMatrix H = collocation.double_layer_matrix(options.progress, &counts);
+    const double distance = integrate_carefully(collocation, H), wanted = options.tolerance * 1e-2;
+    constexpr double smallest = 1e-12;  // well above rounding
     summary.near_share = double(counts.near) / double(counts.pairs);
     summary.assemble_seconds = watch.lap();
     report(options.progress, "factor", 0);
-    solver = make_dense_solver(std::move(H), B, options.tolerance * 1e-2);
+    solver = make_dense_solver(std::move(H), B, std::max(wanted * distance, std::min(wanted, smallest)));
     const double rotation_residual =
         solver->apply_H(B.rightCols<3>()).cwiseAbs().maxCoeff() / B.rightCols<3>().cwiseAbs().maxCoeff();
     quadrature_error = std::min(options.tolerance, rotation_residual_to_error * rotation_residual);

@@ -56,5 +56,23 @@ TEST_P(ReferenceResponse, ErrorIsNotAboveTheEstimate) {
 INSTANTIATE_TEST_SUITE_P(PoissonAndTolerance, ReferenceResponse,
                          ::testing::Combine(::testing::Values(0.3, 0.45), ::testing::Values(1e-3, 1e-6, 1e-10, 1e-12)));
 
+/// Where slivers meet, a vertex's block with itself is close to singular, and multiplies what quadrature and
+/// refinement leave of its equations.
+TEST(ResponseOfANeedle, MeetsItsToleranceAtTheTip) {
+  for (const double length : {6, 12, 40, 300}) {
+    const TriangleMesh mesh = spiked_sphere(3, length);
+    const auto response = [&](double requested) {
+      ResponseModel made(mesh, {.poisson = 0.45, .tolerance = requested, .solver = Solver::dense});
+      made.add(landmarks_on({vertex_at(mesh, {-1, 0, 0}), vertex_at(mesh, {0, -1, 0}), vertex_at(mesh, {0, 0, -1})}));
+      return made.response();
+    };
+    const Eigen::MatrixXd expected = response(1e-10);
+    for (const double requested : {1e-2, 1e-3, 1e-4, 1e-6}) {
+      const double error = (response(requested) - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+      EXPECT_LE(error, requested) << length;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace skinbem
