@@ -34,6 +34,11 @@ RowMajorMatrix rows_of(const Collocation<Kelvin<double>>& collocation, const std
   return result;
 }
 
+RowMajorMatrix careful_rows(const Collocation<Kelvin<double>>& collocation, const std::vector<std::int32_t>& vertices) {
+  constexpr double care = 1e-3;
+  return rows_of(collocation.with_tolerance(care * collocation.tolerance()), vertices);
+}
+
 }  // namespace
 
 std::vector<std::size_t> close_to_singular(std::size_t count, const std::function<Mat3(std::size_t)>& own_block) {
@@ -52,12 +57,11 @@ std::vector<std::size_t> close_to_singular(std::size_t count, const std::functio
 
 ExactRows::ExactRows(const Collocation<Kelvin<double>>& collocation, std::vector<std::int32_t> vertices)
     : vertices_(std::move(vertices)), rows_(rows_of(collocation, vertices_)) {
-  constexpr double care = 1e-3;
   const auto steep = close_to_singular(vertices_.size(), [&](std::size_t k) { return own_block(k); });
   if (steep.empty()) return;
   std::vector<std::int32_t> again;
   for (const std::size_t k : steep) again.push_back(vertices_[k]);
-  const RowMajorMatrix careful = rows_of(collocation.with_tolerance(care * collocation.tolerance()), again);
+  const RowMajorMatrix careful = careful_rows(collocation, again);
   for (std::size_t i = 0; i < steep.size(); ++i) {
     rows_.middleRows<3>(3 * Index(steep[i])) = careful.middleRows<3>(3 * Index(i));
   }
@@ -78,11 +82,12 @@ double integrate_carefully(const Collocation<Kelvin<double>>& collocation, RowMa
     vertices.push_back(std::int32_t(k));
   }
   if (vertices.empty()) return 1;
-  const ExactRows exact(collocation, vertices);
+  const RowMajorMatrix careful = careful_rows(collocation, vertices);
   double nearest = close;
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    H.middleRows<3>(3 * Index(vertices[k])) = exact.rows().middleRows<3>(3 * Index(k));
-    nearest = std::min(nearest, distance_to_singular(exact.own_block(k)));
+    auto rows = H.middleRows<3>(3 * Index(vertices[k]));
+    rows = careful.middleRows<3>(3 * Index(k));
+    nearest = std::min(nearest, distance_to_singular(rows.middleCols<3>(3 * Index(vertices[k]))));
   }
   return nearest / close;
 }

@@ -118,6 +118,12 @@ std::vector<FarSampler::Partner> FarSampler::partners_of(std::int32_t cluster) c
   return partners;
 }
 
+double FarSampler::solid_angle(const std::vector<Partner>& partners) {
+  double angle = 0;
+  for (const Partner& partner : partners) angle += partner.angle;
+  return angle;
+}
+
 FarSamples FarSampler::samples(std::int32_t cluster, Index count) const {
   FarSamples result;
   const std::vector<Partner> partners = partners_of(cluster);
@@ -132,8 +138,7 @@ FarSamples FarSampler::samples(std::int32_t cluster, Index count) const {
 }
 
 void FarSampler::add_spread_out(const std::vector<Partner>& partners, Index count, FarSamples& samples) const {
-  double angle = 0;
-  for (const Partner& partner : partners) angle += partner.angle;
+  const double angle = solid_angle(partners);
   double wanted = 0.5, area = 0;  // of samples, rounded; of the partners that they stand for
   std::size_t taken = 0;
   for (const Partner& partner : partners) {
@@ -156,9 +161,7 @@ void FarSampler::add_spread_out(const std::vector<Partner>& partners, Index coun
 /// One in each of kPanel equal parts of the partners' solid angle.
 void FarSampler::add_at_random(const std::vector<Partner>& partners, FarSamples& samples) const {
   std::minstd_rand random(static_cast<unsigned>(partners.front().cluster + 1));
-  double angle = 0;
-  for (const Partner& partner : partners) angle += partner.angle;
-  const double part = angle / double(kPanel);
+  const double part = solid_angle(partners) / double(kPanel);
   std::size_t p = 0;
   double sum = partners[0].angle;
   for (std::size_t k = 0; k < kPanel; ++k) {

@@ -63,6 +63,7 @@ class FarSampler {
     double angle;  ///< solid, as the cluster that has it sees it
   };
   std::vector<Partner> partners_of(std::int32_t cluster) const;
+  static double solid_angle(const std::vector<Partner>& partners);
   void add_spread_out(const std::vector<Partner>& partners, Index count, FarSamples& samples) const;
   void add_at_random(const std::vector<Partner>& partners, FarSamples& samples) const;
 

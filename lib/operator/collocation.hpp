@@ -85,6 +85,10 @@ class Collocation {
   template <class Real>
   using ColumnBlock = detail::ColumnBlock<Kernel, Real>;
 
+  /// Of an integral over one triangle: an entry sums several.
+  static double element_tolerance(double tolerance) { return std::max(smallest_tolerance, tolerance / 2); }
+  /// Sums in float: where the tolerance is at least ten times their error.
+  bool in_single_precision() const { return tolerance_ >= 1e-5; }
   Index panel_count() const;
   /// Calls body(k, panel, column block of the thread) for every panel of rows, on all threads.
   template <class Real, class Body>
@@ -111,7 +115,6 @@ class Collocation {
   double scale_;  ///< a power of two, so that scaling is exact: the kernels' batches work near unit length
   double tolerance_;
   ElementIntegral<Kernel> integral_;
-  bool single_;  ///< sums in float: where the tolerance is at least ten times their error
 };
 
 extern template class Collocation<Kelvin<double>>;

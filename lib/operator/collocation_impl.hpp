@@ -60,8 +60,7 @@ Collocation<Kernel>::Collocation(const TriangleMesh& mesh, const Kernel& kernel,
     : triangles_of_vertex_(triangles_around_vertices(mesh)),
       scale_(unit_scale(mesh)),
       tolerance_(options.tolerance),
-      integral_(kernel, std::max(smallest_tolerance, tolerance_ / 2)),
-      single_(tolerance_ >= 1e-5) {
+      integral_(kernel, element_tolerance(tolerance_)) {
   vertices_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[v] = mesh.vertices.row(v).transpose() * scale_;
   triangles_.resize(mesh.triangle_count());
@@ -82,8 +81,7 @@ template <class Kernel>
 Collocation<Kernel> Collocation<Kernel>::with_tolerance(double tolerance) const {
   Collocation other = *this;
   other.tolerance_ = tolerance;
-  other.integral_ = ElementIntegral<Kernel>(kernel(), std::max(smallest_tolerance, tolerance / 2));
-  other.single_ = tolerance >= 1e-5;
+  other.integral_ = ElementIntegral<Kernel>(kernel(), element_tolerance(tolerance));
   return other;
 }
 
@@ -154,7 +152,7 @@ template <class Kernel>
 RowMajorMatrix Collocation<Kernel>::double_layer_matrix(const Progress& progress, AssemblyCounts* counts) const {
   RowMajorMatrix H(components * node_count(), components * node_count());
   std::vector<AssemblyCounts> counted(panel_count());
-  single_ ? fill<float>(H, progress, counted) : fill<double>(H, progress, counted);
+  in_single_precision() ? fill<float>(H, progress, counted) : fill<double>(H, progress, counted);
   if (counts) {
     for (const AssemblyCounts& c : counted) {
       counts->pairs += c.pairs;
@@ -197,7 +195,7 @@ template <class Kernel>
 void Collocation<Kernel>::for_double_layer_panels(
     std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
     const std::function<void(std::size_t, std::size_t, const double*)>& store) const {
-  if (!single_) {
+  if (!in_single_precision()) {
     make_panels<double>(rows, columns, store);
     return;
   }

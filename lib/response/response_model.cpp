@@ -106,6 +106,7 @@ struct ResponseModel::State {
     solver = make_iterative_solver(mesh, collocation, B, iterative, options.progress);
     residual = iterative.residual;
     answered = false;
+    ++summary.compressions;
     summary.assemble_seconds += watch.lap();
   }
 
@@ -267,10 +268,9 @@ struct ResponseModel::State {
     }
     if (compressed() && summary.estimated_error > hopeless * options.tolerance) {
       std::ostringstream message;
-      message
-          << "the response is estimated to err by " << summary.estimated_error << " instead of " << options.tolerance
-          << " (residual " << summary.residual
-          << "): the body bends too easily for a compressed matrix; allow a larger tolerance, or use the dense solver";
+      message << "the response is estimated to err by " << summary.estimated_error << " instead of "
+              << options.tolerance << " (residual " << summary.residual
+              << "): the body bends too easily for a compressed matrix; " << solver->advice();
       throw Error(ErrorCode::numerical, message.str());
     }
   }

@@ -40,8 +40,9 @@ struct ResponseSummary {
   /// (CompressionDefects), times the largest displacement that random defects of that size cause where the landmarks
   /// are held; 0 while there are too few landmarks for an R.
   double estimated_error = 0;
-  double residual = 0;  ///< largest of the solves so far
-  int iterations = 0;   ///< most of the solves so far
+  double residual = 0;   ///< largest of the solves so far
+  int iterations = 0;    ///< most of the solves so far
+  int compressions = 0;  ///< how often H was compressed: more than once where the first did not serve; 0 for dense
 };
 
 /// A landmark and its Green's functions: displacements for unit tractions, each column of G_k scaled by 1 / load.
@@ -74,8 +75,8 @@ class ResponseModel {
 
   /// Appends landmarks: three right-hand sides each, all solved together. Throws Error naming a landmark that is not on
   /// the mesh, or on the vertex of another; nothing is added then. With the compressed solver, where the estimated
-  /// error exceeds five tolerances, H is compressed less and everything solved again; Error(numerical) where it still
-  /// exceeds ten.
+  /// error exceeds 1.5 tolerances (five where H is in 16 bits), the iteration goes on or, where that is not to blame, H
+  /// is compressed less and everything solved again; Error(numerical) where the estimate still exceeds ten.
   void add(std::span<const Landmark> landmarks);
   /// Replaces landmark k (order and count stay). Three right-hand sides. Throws like add, changing nothing.
   void move(Index k, const Landmark& landmark);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include <skinbem/base/row_chunks.hpp>
+#include <skinbem/hmatrix/exact_rows.hpp>
 #include <skinbem/solve/coarse_correction.hpp>
 #include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/schwarz.hpp>
@@ -41,8 +42,7 @@ class CompressedSolver final : public NeumannSolver {
     if (!(ended.residual <= gmres_.tolerance)) {
       std::ostringstream message;
       message << "the iteration did not converge: residual " << ended.residual << " instead of " << gmres_.tolerance
-              << " after " << ended.iterations << " block iterations; check the mesh, allow a larger tolerance, or use "
-              << "the dense solver";
+              << " after " << ended.iterations << " block iterations; " << advice();
       throw Error(ErrorCode::numerical, message.str());
     }
     if (summary) *summary = ended;
@@ -59,6 +59,15 @@ class CompressedSolver final : public NeumannSolver {
       result.middleCols(first, width) = H_.from_tree(product);
     }
     return result;
+  }
+
+  /// The first vertex of close_to_singular is to blame where there is one.
+  std::string advice() const override {
+    const std::string otherwise = "allow a larger tolerance, or use the dense solver";
+    const auto delicate = close_to_singular(H_.diagonal().size(), [&](std::size_t k) { return H_.diagonal()[k]; });
+    if (delicate.empty()) return "check the mesh, " + otherwise;
+    return "vertex " + std::to_string(H_.tree().order()[delicate.front()]) +
+           " is the tip of a needle, or slivers meet there: move it nearer to its neighbours, " + otherwise;
   }
 
   void set_residual(double residual) override { gmres_.tolerance = residual; }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <skinbem/base/progress.hpp>
 #include <skinbem/base/types.hpp>
@@ -34,6 +35,8 @@ class NeumannSolver {
   /// displacement, of size 1 and alike within a leaf of the tree as those of compression are. Their solutions tell what
   /// the defects that are left may do. Nothing for a dense solver.
   virtual Eigen::MatrixXd random_defects() const { return {}; }
+  /// Compressed: for messages, how to mend a body that it cannot solve.
+  virtual std::string advice() const { return {}; }
 };
 
 /// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that

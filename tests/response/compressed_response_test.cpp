@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The response by the compressed matrix against the dense one: to its tolerance, and no worse than it says.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <skinbem/base/error.hpp>
 #include <skinbem/mesh/mesh_io.hpp>
 #include <skinbem/response/response_model.hpp>
+#include <skinbem/solve/neumann_solver.hpp>
 
 #include "files.hpp"
 #include "response/bodies.hpp"
@@ -74,6 +76,58 @@ INSTANTIATE_TEST_SUITE_P(
                       CompressedCase{"bunny", nullptr, "more_meshes/bunny.off"},
                       CompressedCase{"spot", nullptr, "more_meshes/spot.obj"}),
     [](const auto& body) { return body.param.name; });
+
+/// How often everything is solved for while landmarks are added: progress starts anew.
+int solves(const TriangleMesh& mesh, double requested, ResponseSummary& summary) {
+  int starts = 0;
+  double last = 2;
+  ResponseOptions options{.poisson = 0.45, .tolerance = requested, .solver = Solver::hmatrix};
+  options.progress = [&](std::string_view stage, double done) {
+    if (stage != "solve") return true;
+    starts += done < last;
+    last = done;
+    return true;
+  };
+  ResponseModel made(mesh, options);
+  made.add(landmarks_on(spread_vertices(mesh, 5)));
+  summary = made.summary();
+  return starts;
+}
+
+/// Where the iteration is to blame for an estimate that is too large it goes on; H is compressed anew where that is.
+TEST(CompressedResponseOf, LooseBodyIsMendedWhereItErrs) {
+  ResponseSummary summary;
+  EXPECT_EQ(solves(cube(12), 2e-4, summary), 1);
+  EXPECT_EQ(summary.compressions, 1);
+  EXPECT_EQ(solves(needle_box(30), 2e-4, summary), 2);
+  EXPECT_EQ(summary.compressions, 1);
+  EXPECT_EQ(solves(thin_slab(24, 0.03), 1e-3, summary), 2);
+  EXPECT_EQ(summary.compressions, 2);
+}
+
+TEST(CompressedResponseOf, NeedleThatIsTooLongNamesItsTip) {
+  try {
+    model(spiked_sphere(3, 12), 2e-4, Solver::hmatrix);
+    FAIL() << "if it can be solved now: use a longer needle";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::numerical);
+    EXPECT_THAT(error.what(), testing::HasSubstr("vertex 0 is the tip of a needle"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("residual"));
+  }
+}
+
+/// H in 16 bits, as it is for large skins: their dense matrix would not fit, and a compressed one in double precision
+/// takes its place.
+TEST(CompressedResponseOf, LargeSkinMeetsItsToleranceAndItsEstimate) {
+  const TriangleMesh mesh = slender_ellipsoid(5);
+  constexpr double requested = 2e-4;
+  ASSERT_TRUE(IterativeOptions::for_tolerance(requested, mesh.vertex_count()).compression.packed);
+  const ResponseModel compressed = model(mesh, requested, Solver::hmatrix);
+  const double error = difference(compressed, model(mesh, 1e-5, Solver::hmatrix));
+  EXPECT_LE(error, tolerance::compressed_response * requested);
+  EXPECT_LE(error, tolerance::compressed_estimate * compressed.summary().estimated_error);
+  EXPECT_LE(compressed.summary().estimated_error, 5 * requested);
+}
 
 TEST(CompressedEdits, GiveWhatAFreshModelGives) {
   const TriangleMesh mesh = slender_ellipsoid(4);
