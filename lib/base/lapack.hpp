@@ -53,7 +53,8 @@ inline void getrs(const int* n, const int* columns, const double* a, const int* 
 }
 
 /// B becomes A^-T B; A is destroyed. False for a singular A.
-inline bool solve_transposed(Eigen::MatrixXf& A, Eigen::MatrixXf& B) {
+template <class Matrix>
+bool solve_transposed(Matrix& A, Matrix& B) {
   const int n = static_cast<int>(A.rows()), columns = static_cast<int>(B.cols());
   std::vector<int> pivots(static_cast<std::size_t>(n));
   if (getrf(&n, A.data(), pivots.data()) != 0) return false;
@@ -102,6 +103,15 @@ void add_product(const T* V, const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynam
 }
 
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd>;
+
+/// C += A B.
+inline void add_product(const ConstMatrixRef& A, const ConstMatrixRef& B, Eigen::Ref<Eigen::MatrixXd> C) {
+  const int m = static_cast<int>(A.rows()), n = static_cast<int>(B.cols()), k = static_cast<int>(A.cols());
+  const int lda = static_cast<int>(A.outerStride()), ldb = static_cast<int>(B.outerStride()),
+            ldc = static_cast<int>(C.outerStride());
+  const double one = 1;
+  dgemm_("N", "N", &m, &n, &k, &one, A.data(), &lda, B.data(), &ldb, &one, C.data(), &ldc);
+}
 
 /// C = A^T B.
 inline void transposed_product(const ConstMatrixRef& A, const ConstMatrixRef& B, Eigen::Ref<Eigen::MatrixXd> C) {

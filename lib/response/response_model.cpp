@@ -3,12 +3,12 @@
 
 #include <omp.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <optional>
 #include <sstream>
 #include <utility>
 
+#include <skinbem/base/lapack.hpp>
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/base/stopwatch.hpp>
 #include <skinbem/hmatrix/exact_rows.hpp>
@@ -243,17 +243,18 @@ struct ResponseModel::State {
   Eigen::MatrixXd coefficients(const Eigen::MatrixXd& X) const {
     const Index n = X.cols();
     require_enough_landmarks();
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 6, n + 6);
-    system.topLeftCorner(n, n) = measure(X);
-    system.topRightCorner(n, 6) = measure(B);
-    for (Index k = 0; k < Index(greens.size()); ++k) system.block<6, 3>(n, 3 * k) = greens[k].L;
-    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system);
-    if (!(lu.rcond() > told_apart)) {
+    Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(n + 6, n + 6), inverse = Eigen::MatrixXd::Identity(n + 6, n + 6);
+    transposed.topLeftCorner(n, n) = measure(X).transpose();
+    transposed.bottomLeftCorner(6, n) = measure(B).transpose();
+    for (Index k = 0; k < Index(greens.size()); ++k) transposed.block<3, 6>(3 * k, n) = greens[k].L.transpose();
+    const double size = transposed.cwiseAbs().colwise().sum().maxCoeff();
+    const bool regular = lapack::solve_transposed(transposed, inverse);
+    if (!regular || !(size * inverse.cwiseAbs().rowwise().sum().maxCoeff() < 1 / told_apart)) {
       throw Error(ErrorCode::bad_input,
                   "the landmarks cannot be told apart: they are too near to each other, or so wide that they share one "
                   "patch; lower the radius, check its unit, or move the landmarks");
     }
-    return lu.solve(Eigen::MatrixXd::Identity(n + 6, n));
+    return inverse.leftCols(n);
   }
 
   /// After a change of landmarks: estimates the error of R, and does better where it is too large. Throws
@@ -387,7 +388,8 @@ Points ResponseModel::landmark_positions() const { return state_->positions(); }
 Eigen::MatrixXd ResponseModel::response() const {
   const Eigen::MatrixXd X = state_->all_X();
   const Eigen::MatrixXd solution = state_->coefficients(X);
-  Eigen::MatrixXd R = X * solution.topRows(X.cols()) + state_->B * solution.bottomRows<6>();
+  Eigen::MatrixXd R = state_->B * solution.bottomRows<6>();
+  lapack::add_product(X, solution.topRows(X.cols()), R);
   if (!R.allFinite()) throw Error(ErrorCode::numerical, "the response is not finite; check the mesh's coordinates");
   return R;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <sstream>
 
 #include <skinbem/solve/lu.hpp>
@@ -19,16 +20,16 @@ class DenseSolver final : public NeumannSolver {
     }
     A_.noalias() += B_ * B_.transpose();
     single_.emplace(A_.cast<float>());
+    contraction_ = measure_contraction();
   }
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary) const override {
     SolveSummary ended;
-    Eigen::MatrixXd Y = refine(G, ended, [&](const Eigen::MatrixXd& r) {
-      return Eigen::MatrixXd(single_->solve(r.cast<float>()).cast<double>());
-    });
+    Eigen::MatrixXd Y = refine(G, ended, contraction_, [&](const Eigen::MatrixXd& r) { return solve_in_single(r); });
     if (!(ended.residual <= tolerance_)) {
       std::call_once(double_made_, [&] { double_.emplace(A_); });
-      Y = refine(G, ended, [&](const Eigen::MatrixXd& r) { return double_->solve(r); });
+      constexpr double unknown = std::numeric_limits<double>::infinity();
+      Y = refine(G, ended, unknown, [&](const Eigen::MatrixXd& r) { return double_->solve(r); });
     }
     if (!(ended.residual <= std::max(tolerance_, 1e-9))) {
       std::ostringstream message;
@@ -47,11 +48,31 @@ class DenseSolver final : public NeumannSolver {
   }
 
  private:
+  Eigen::MatrixXd solve_in_single(const Eigen::MatrixXd& r) const {
+    return single_->solve(r.cast<float>()).cast<double>();
+  }
+
+  /// Ten times what a step of refinement leaves of a residual that a step before it has left: |E r| / |r|,
+  /// E = I - A S, of r = E w for random w.
+  double measure_contraction() const {
+    constexpr double safety = 10;
+    std::minstd_rand random;
+    Eigen::MatrixXd r(A_.rows(), 3);
+    for (double& sign : r.reshaped()) sign = random() < random.max() / 2 ? -1 : 1;
+    Eigen::RowVectorXd before;
+    for (int step = 0; step < 2; ++step) {
+      before = r.colwise().norm();
+      add_product(-1, solve_in_single(r), r);
+    }
+    return safety * (r.colwise().norm().array() / before.array()).maxCoeff();
+  }
+
   /// Iterative refinement (Wilkinson): y += S (g - A y) with S an approximate inverse, until the residual meets the
-  /// tolerance or no longer falls. Each column is scaled to unit size, so that single precision does not over- or
-  /// underflow.
+  /// tolerance, is sure to by `contraction`, or no longer falls. Each column is scaled to unit size, so that single
+  /// precision does not over- or underflow.
   template <class Inverse>
-  Eigen::MatrixXd refine(const Eigen::MatrixXd& G, SolveSummary& ended, const Inverse& inverse) const {
+  Eigen::MatrixXd refine(const Eigen::MatrixXd& G, SolveSummary& ended, double contraction,
+                         const Inverse& inverse) const {
     const Eigen::RowVectorXd size = G.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
     const Eigen::MatrixXd g = G.array().rowwise() / size.array();
     Eigen::MatrixXd step = inverse(g);
@@ -71,6 +92,11 @@ class DenseSolver final : public NeumannSolver {
       if (residual <= tolerance_ || !falls || ended.iterations == most_steps) break;
       step = inverse(r);
       Y += step;
+      if (contraction * residual <= tolerance_) {  // the product that would show it takes as long as a step
+        ended.residual = contraction * residual;
+        ++ended.iterations;
+        break;
+      }
     }
     return Y.array().rowwise() * size.array();
   }
@@ -90,6 +116,7 @@ class DenseSolver final : public NeumannSolver {
   Eigen::MatrixXd B_;
   double tolerance_;
   std::optional<Lu<float>> single_;
+  double contraction_;  ///< of a residual, by one step of refinement with it: at most
   mutable std::optional<Lu<double>> double_;
   mutable std::once_flag double_made_;
 };

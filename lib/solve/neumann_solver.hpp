@@ -14,8 +14,10 @@ namespace skinbem {
 
 /// How a solve ended.
 struct SolveSummary {
-  int iterations = 0;   ///< block iterations, or steps of refinement after a direct factorisation
-  double residual = 0;  ///< largest over the columns of |(H + B B^T) y - g| / |g|, computed, not estimated
+  int iterations = 0;  ///< block iterations, or steps of refinement after a direct factorisation
+  /// Largest over the columns of |(H + B B^T) y - g| / |g|: computed, or after a last step of refinement a bound (ten
+  /// times what such a step was measured to leave).
+  double residual = 0;
 };
 
 /// (H + B B^T)^-1: H the double layer's matrix (3N by 3N, null space the rigid motions), B their orthonormal basis

@@ -48,7 +48,7 @@ TEST(RigidModes, OfPointsOnALineAreRefused) {
   }
 }
 
-TEST(DenseSolver, EqualsEigensLuAndReportsItsTrueResidual) {
+TEST(DenseSolver, EqualsEigensLuAndReportsItsResidual) {
   const Eigen::MatrixXd B = rigid_modes(points());
   const Eigen::MatrixXd H = operator_like_H(B, 0.02);
   const Eigen::MatrixXd A = H + B * B.transpose();
@@ -61,8 +61,8 @@ TEST(DenseSolver, EqualsEigensLuAndReportsItsTrueResidual) {
     const Eigen::MatrixXd Y = make_dense_solver(H, B, requested)->solve(G, &summary);
     const Eigen::MatrixXd residual = A * Y - G;
     const double actual = (residual.colwise().norm().array() / G.colwise().norm().array()).maxCoeff();
-    EXPECT_NEAR(summary.residual, actual, tolerance::rounding) << requested;
-    EXPECT_LE(actual, std::max(requested, tolerance::rounding));
+    EXPECT_LE(actual, summary.residual + tolerance::rounding) << requested;
+    EXPECT_LE(summary.residual, std::max(requested, tolerance::rounding)) << requested;
     for (Index c = 0; c < 5; ++c) {
       const double error = (Y.col(c) - expected.col(c)).norm() / expected.col(c).norm();
       EXPECT_LE(error, std::max(100 * requested, tolerance::rounding * 100)) << requested << ' ' << c;  // condition
