@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame: rest position + R q, then the rigid motion, for skins of 606 to 50,000 vertices and six landmarks. Beside it
-// Eigen and OpenBLAS do the same product on the same numbers (y = x + R q; they leave out the rigid motion).
+// A frame: rest position + R q, then the rigid motion, for skins of 606 to 50,000 vertices and six landmarks, alone and
+// in batches (these of up to 100 landmarks). Beside it Eigen and OpenBLAS do the same product on the same numbers
+// (y = x + R q; they leave out the rigid motion).
 // With --quick, --report, --busy, --seconds S (at most, a case) or --json FILE: percentiles and ratios, see
 // frame_report.hpp. Counter `bytes_per_second`: R, rest position, output and the cache line that a write fetches first.
 #include <benchmark/benchmark.h>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include <skinbem/base/error.hpp>
 #include <skinbem/base/rigid_fit.hpp>
@@ -24,11 +26,11 @@ using namespace skinbem;
 constexpr Index kLandmarks = 6;
 
 struct Skin {
-  explicit Skin(Index vertices)
+  explicit Skin(Index vertices, Index landmark_count = kLandmarks)
       : rest(100 * Points::Random(vertices, 3)),
-        response(0.1 * Eigen::MatrixXd::Random(3 * vertices, 3 * kLandmarks)),
-        landmarks(100 * Points::Random(kLandmarks, 3)),
-        displacements(10 * Points::Random(kLandmarks, 3)) {}
+        response(0.1 * Eigen::MatrixXd::Random(3 * vertices, 3 * landmark_count)),
+        landmarks(100 * Points::Random(landmark_count, 3)),
+        displacements(10 * Points::Random(landmark_count, 3)) {}
 
   Points rest;
   Eigen::MatrixXd response;
@@ -66,23 +68,57 @@ void frame(benchmark::State& state) {
 }
 BENCHMARK(frame)->Apply(sizes);
 
-/// One of 64 frames evaluated together; time and bytes are those of a single frame.
-void frame_of_batch(benchmark::State& state) {
-  constexpr std::size_t kFrames = 64;
-  const Skin skin(state.range(0));
-  const FrameModel model(skin.rest, skin.response, skin.landmarks);
-  std::vector<FrameState> frames(kFrames, FrameState(model));
-  for (FrameState& one : frames) {
-    if (!one.set_landmarks(skin.displacements + Points::Random(kLandmarks, 3))) std::abort();
+/// Many frames evaluated together: vertices, landmarks, frames.
+void batches(benchmark::internal::Benchmark* benchmark) {
+  constexpr std::pair<int, int> skins[] = {{606, 6}, {606, 40}, {2000, 100}, {10000, 40}, {10000, 100}, {50000, 40}};
+  benchmark->ArgNames({"vertices", "landmarks", "frames"});
+  for (const auto& [vertices, landmarks] : skins) {
+    for (const int frames : {4, 8, 64}) benchmark->Args({vertices, landmarks, frames});
   }
-  std::vector<float> positions(kFrames * static_cast<std::size_t>(3 * model.vertex_count()));
-  while (state.KeepRunningBatch(kFrames)) {
+}
+
+/// Time is that of one frame of the batch. A frame's sums, two operations each, over time: Gflop/s.
+void count_frames(benchmark::State& state) {
+  const double sums = 9.0 * static_cast<double>(state.range(0) * state.range(1));
+  state.counters["flops"] =
+      benchmark::Counter(2 * sums * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+void frame_of_batch(benchmark::State& state) {
+  const Skin skin(state.range(0), state.range(1));
+  const auto count = static_cast<std::size_t>(state.range(2));
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  std::vector<FrameState> frames(count, FrameState(model));
+  for (FrameState& one : frames) {
+    if (!one.set_landmarks(skin.displacements + Points::Random(skin.landmarks.rows(), 3))) std::abort();
+  }
+  std::vector<float> positions(count * static_cast<std::size_t>(3 * model.vertex_count()));
+  while (state.KeepRunningBatch(state.range(2))) {
     evaluate_batch(frames, positions);
     benchmark::ClobberMemory();
   }
-  count_bytes(state, model.vertex_count());
+  count_frames(state);
 }
-BENCHMARK(frame_of_batch)->Apply(sizes);
+BENCHMARK(frame_of_batch)->Apply(batches);
+
+/// The same product and the rest positions, without the rigid motion.
+void openblas_sgemm_of_batch(benchmark::State& state) {
+  const Skin skin(state.range(0), state.range(1));
+  const Eigen::MatrixXf response = skin.response.cast<float>();
+  const Eigen::VectorXf rest = Eigen::Map<const Eigen::VectorXd>(skin.rest.data(), skin.rest.size()).cast<float>();
+  const Eigen::MatrixXf q = Eigen::MatrixXf::Random(response.cols(), state.range(2));
+  Eigen::MatrixXf positions(rest.size(), q.cols());
+  const int rows = static_cast<int>(response.rows()), depth = static_cast<int>(q.rows());
+  openblas_set_num_threads(1);
+  while (state.KeepRunningBatch(state.range(2))) {
+    positions.colwise() = rest;
+    cblas_sgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows, static_cast<int>(q.cols()), depth, 1, response.data(),
+                rows, q.data(), depth, 1, positions.data(), rows);
+    benchmark::ClobberMemory();
+  }
+  count_frames(state);
+}
+BENCHMARK(openblas_sgemm_of_batch)->Apply(batches);
 
 void eigen_gemv(benchmark::State& state) {
   const Skin skin(state.range(0));
