@@ -91,7 +91,7 @@ inline constexpr double program_response = 1e-10;
 inline constexpr double tile_product_f32 = 1e-6;
 /// The compressed matrix's numbers and sums in single precision, of columns of size 1.
 inline constexpr double compressed_f32 = 2e-6;
-/// The same of numbers in 16 bits: a step is 1/32767 of a column's largest number.
+/// The same of numbers in 16 bits: the largest of a column err by 1/32767 of it, the others less.
 inline constexpr double compressed_packed = 2e-5;
 /// Error of a compressed response, in tolerances asked for and in errors estimated (measured: 0.6 and 0.7).
 inline constexpr double compressed_response = 1;

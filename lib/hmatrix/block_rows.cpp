@@ -2,6 +2,7 @@
 #include <skinbem/hmatrix/block_rows.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace skinbem {
 namespace {
@@ -67,7 +68,10 @@ void BlockRows<T>::get_column(std::size_t row, Index first, Index k, T* values) 
     return;
   }
   const T scale = T(scales_.data()[scale_index(b, first, k)]);
-  for (std::size_t r = 0; r < height; ++r) values[r] = packed_.data()[offset + r] * scale;
+  for (std::size_t r = 0; r < height; ++r) {
+    const T root = packed_.data()[offset + r] * scale;
+    values[r] = root * std::abs(root);
+  }
 }
 
 /// Consecutive columns of the tile that begins with row `first`, from `column` on.

@@ -2,6 +2,7 @@
 #include <skinbem/hmatrix/tile_product.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -109,7 +110,8 @@ class UnpackedTile {
       const auto scale = hn::Set(d, next_.scales[k]);
       for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
         const auto number = hn::PromoteTo(d32, hn::LoadU(d16, next_.numbers + k * height + r));
-        hn::Store(hn::Mul(hn::ConvertTo(d, number), scale), d, slice_ + k * height + r);
+        const auto root = hn::Mul(hn::ConvertTo(d, number), scale);
+        hn::Store(hn::Mul(root, hn::Abs(root)), d, slice_ + k * height + r);
       }
     }
     next_.numbers += height * depth;
@@ -180,13 +182,15 @@ float pack(float* values, std::size_t height, std::int16_t* numbers) {
   for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
     largest = hn::Max(largest, hn::Abs(hn::LoadU(d, values + r)));
   }
-  const float scale = std::max(hn::GetLane(hn::MaxOfLanes(d, largest)) / most, std::numeric_limits<float>::min());
+  const float scale =
+      std::max(std::sqrt(hn::GetLane(hn::MaxOfLanes(d, largest))) / most, std::numeric_limits<float>::min());
   const auto inverse = hn::Set(d, 1 / scale);
   for (std::size_t r = 0; r < height; r += hn::Lanes(d)) {
     const auto value = hn::LoadU(d, values + r);
-    const auto number = hn::NearestInt(hn::Mul(value, inverse));
+    const auto number = hn::NearestInt(hn::CopySign(hn::Mul(hn::Sqrt(hn::Abs(value)), inverse), value));
+    const auto root = hn::Mul(hn::ConvertTo(d, number), hn::Set(d, scale));
     hn::StoreU(hn::DemoteTo(d16, number), d16, numbers + r);
-    hn::StoreU(hn::NegMulAdd(hn::ConvertTo(d, number), hn::Set(d, scale), value), d, values + r);
+    hn::StoreU(hn::NegMulAdd(root, hn::Abs(root), value), d, values + r);
   }
   return scale;
 }

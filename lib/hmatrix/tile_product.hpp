@@ -24,7 +24,8 @@ struct RowRange {
   std::size_t length;
 };
 
-/// A tile whose numbers take 16 bits: number (r, k) is numbers[k height + r] * scales[k].
+/// A tile whose numbers take 16 bits: number (r, k) is q |q|, q = numbers[k height + r] * scales[k]. The finer the
+/// smaller it is: in a near block's column the entries of neighbours are large, the others are not.
 struct PackedTile {
   const std::int16_t* numbers;
   const float* scales;
@@ -59,8 +60,8 @@ void store_sums(const T* sums, std::size_t height, std::size_t columns, T* out) 
   }
 }
 
-/// One column of a PackedTile from `height` values, and its scale. The values become what is lost: at most half of the
-/// scale, 1/65534 of the largest value.
+/// One column of a PackedTile from `height` values, and its scale. The values become what is lost: of a value v at
+/// most (|v|^1/2 + scale / 4) scale, where scale is 1/32767 of the largest |v|^1/2.
 float pack_column(float* values, std::size_t height, std::int16_t* numbers);
 
 }  // namespace skinbem

@@ -276,9 +276,9 @@ struct ResponseModel::State {
     }
   }
 
-  /// Of the estimate, which is twice the error and more; five tolerances where it is mostly the rounding of 16 bits,
-  /// which differs from vertex to vertex and to which a body hardly answers.
-  double allowed_error() const { return (iterative_options().compression.packed ? 5 : 1.5) * options.tolerance; }
+  /// Of the estimate, which is twice the error and more. The rounding of 16 bits has a part in it, but differs from
+  /// vertex to vertex, and a body hardly answers to that.
+  double allowed_error() const { return (iterative_options().compression.packed ? 3 : 1.5) * options.tolerance; }
 
   /// Iterates on where the compression is good enough, else compresses less; false where neither is possible.
   bool do_better() {

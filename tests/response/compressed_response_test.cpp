@@ -126,7 +126,7 @@ TEST(CompressedResponseOf, LargeSkinMeetsItsToleranceAndItsEstimate) {
   const double error = difference(compressed, model(mesh, 1e-5, Solver::hmatrix));
   EXPECT_LE(error, tolerance::compressed_response * requested);
   EXPECT_LE(error, tolerance::compressed_estimate * compressed.summary().estimated_error);
-  EXPECT_LE(compressed.summary().estimated_error, 5 * requested);
+  EXPECT_LE(compressed.summary().estimated_error, 3 * requested);
 }
 
 TEST(CompressedEdits, GiveWhatAFreshModelGives) {
