@@ -75,8 +75,8 @@ class ResponseModel {
 
   /// Appends landmarks: three right-hand sides each, all solved together. Throws Error naming a landmark that is not on
   /// the mesh, or on the vertex of another; nothing is added then. With the compressed solver, where the estimated
-  /// error exceeds 1.5 tolerances (three where H is in 16 bits), the iteration goes on or, where that is not to blame, H
-  /// is compressed less and everything solved again; Error(numerical) where the estimate still exceeds ten.
+  /// error exceeds 1.5 tolerances (three where H is in 16 bits), the iteration goes on or, where that is not to blame,
+  /// H is compressed less and everything solved again; Error(numerical) where the estimate still exceeds ten.
   void add(std::span<const Landmark> landmarks);
   /// Replaces landmark k (order and count stay). Three right-hand sides. Throws like add, changing nothing.
   void move(Index k, const Landmark& landmark);
