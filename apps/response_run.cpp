@@ -12,7 +12,6 @@
 #include <skinbem/mesh/validate.hpp>
 #include <skinbem/response/landmark_patch.hpp>
 #include <skinbem/response/landmark_table.hpp>
-#include <skinbem/response/response_model.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
 
 #include "console.hpp"
@@ -79,6 +78,7 @@ void read_response(const ResponseRunOptions& options, const std::string& file, R
 void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
   skinbem::ResponseOptions solve;
   solve.poisson = options.poisson;
+  solve.displacements = options.displacements;
   solve.tolerance = options.tolerance;
   solve.solver = options.solver;
   solve.memory_limit = static_cast<std::size_t>(options.memory_gigabytes * 1e9);
@@ -118,6 +118,13 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
   command.add_option("--radius", options.radius, "Of landmarks whose file gives none, unit of the mesh; 0: a point")
       ->check(number([](double value) { return value >= 0; }, "a length, zero or more"))
       ->capture_default_str();
+  command
+      .add_option("--displacements", options.displacements,
+                  "Between vertices: linear, or curved as their gradients say, nearer to the continuous body")
+      ->transform(word<skinbem::Displacements>(
+          {{"linear", skinbem::Displacements::linear}, {"curved", skinbem::Displacements::curved}}))
+      ->type_name("TEXT")
+      ->default_str("linear");
   command.add_option("--solver", options.solver, "How the equations are solved: auto, dense or hmatrix (compressed)")
       ->transform(word<skinbem::Solver>({{"auto", skinbem::Solver::automatic},
                                          {"dense", skinbem::Solver::dense},

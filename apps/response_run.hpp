@@ -9,12 +9,12 @@
 
 #include <skinbem/io/report.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
-#include <skinbem/response/landmark.hpp>
-#include <skinbem/solve/solver_choice.hpp>
+#include <skinbem/response/response_model.hpp>
 
 struct ResponseRunOptions {
   std::string mesh, landmarks;
   double poisson = 0.45, radius = 0, tolerance = 1e-6;
+  skinbem::Displacements displacements = skinbem::Displacements::linear;
   skinbem::Solver solver = skinbem::Solver::automatic;
   double memory_gigabytes = 0;
   int threads = 0;

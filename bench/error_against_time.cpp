@@ -62,14 +62,17 @@ Options parse(int argc, char** argv) {
 
 ChildLimits limits_of(const Options& o) { return {o.memory > 0 ? o.memory * 1e9 : 0.8 * available_bytes(), o.seconds}; }
 
-/// Boundary elements, and finite elements with each of the qualities.
+/// Boundary elements with displacements of either kind, and finite elements with each of the qualities.
 std::vector<ResponseCase> contenders(const Options& o, double poisson) {
   ResponseCase c{.poisson = poisson, .tolerance = o.tolerance, .threads = o.threads};
   std::vector<ResponseCase> cases;
   for (const Method method : methods()) {
     c.method = method;
     if (method == Method::boundary_elements) {
-      cases.push_back(c);
+      for (const Displacements displacements : {Displacements::linear, Displacements::curved}) {
+        c.displacements = displacements;
+        cases.push_back(c);
+      }
       continue;
     }
     for (const std::string& quality : o.qualities) {
@@ -116,7 +119,8 @@ std::optional<Truth> truth_by(ResponseCase c, const std::vector<Skin>& skins, co
 }
 
 void print_row(const nlohmann::json& run) {
-  const std::string method = run["method"].get<std::string>() + " " + run.value("quality", "");
+  const std::string method =
+      run["method"].get<std::string>() + " " + run.value("quality", "") + run.value("displacements", "");
   std::printf("| %s | %.2f | %s | %ld |", run["experiment"].get<std::string>().c_str(), run["poisson"].get<double>(),
               method.c_str(), run["vertices"].get<long>());
   if (run.contains("failure")) {
@@ -153,7 +157,7 @@ nlohmann::json compare_responses(double poisson, const Options& o, nlohmann::jso
   const std::optional<Truth> truth = truth_by(cases[0], skins, o);
   if (!truth) return {{"poisson", poisson}, {"failure", "the truth needs more memory or time"}};
   nlohmann::json facts = {{"poisson", poisson}, {"order", truth->order}, {"step", truth->step}};
-  if (cases.size() > 1) {
+  if (cases.back().method == Method::finite_elements) {
     if (const auto other = truth_by(cases.back(), skins, o)) {
       facts.update({{"fem_order", other->order}, {"fem_step", other->step}});
       facts["fem_distance"] = (other->R - truth->R).norm() / truth->R.norm();
@@ -161,7 +165,9 @@ nlohmann::json compare_responses(double poisson, const Options& o, nlohmann::jso
   }
   const TemporaryFolder folder;
   for (std::size_t level = 0; level < skins.size(); ++level) {
-    if (level == static_cast<std::size_t>(o.levels)) cases.erase(cases.begin());  // the rivals go on alone
+    if (level == static_cast<std::size_t>(o.levels)) {  // the rivals go on alone
+      std::erase_if(cases, [](const ResponseCase& c) { return c.method == Method::boundary_elements; });
+    }
     const auto measure = [&](ResponseCase c) {
       c.keep = folder.path() / "R.npy";
       nlohmann::json run = measure_response(skins[level], c, limits_of(o));
@@ -220,6 +226,7 @@ nlohmann::json at_equal_error(const nlohmann::json& rows) {
       table.push_back({{"experiment", row["experiment"]},
                        {"poisson", row["poisson"]},
                        {"quality", std::get<2>(key)},
+                       {"displacements", row["displacements"]},
                        {"vertices", row["vertices"]},
                        {"rms_error", row["rms_error"]},
                        {"times", times},
@@ -232,11 +239,12 @@ nlohmann::json at_equal_error(const nlohmann::json& rows) {
 void print_equal_error(const nlohmann::json& table) {
   for (const nlohmann::json& row : table) {
     std::printf(
-        "%s, nu %.2f: to the error %.2e of boundary elements on %ld vertices finite elements (%s) need %s%.2f "
+        "%s, nu %.2f: to the error %.2e of boundary elements (%s) on %ld vertices finite elements (%s) need %s%.2f "
         "times as long\n",
         row["experiment"].get<std::string>().c_str(), row["poisson"].get<double>(), row["rms_error"].get<double>(),
-        row["vertices"].get<long>(), row["quality"].get<std::string>().c_str(),
-        row["reached"].get<bool>() ? "" : "more than ", row["times"].get<double>());
+        row["displacements"].get<std::string>().c_str(), row["vertices"].get<long>(),
+        row["quality"].get<std::string>().c_str(), row["reached"].get<bool>() ? "" : "more than ",
+        row["times"].get<double>());
   }
 }
 

@@ -3,7 +3,7 @@
 /// A problem whose solution is known: a point load in the endless material outside the body.
 ///
 /// Kelvin's solution is an elastic field in the body, free of forces there. Its exact tractions on the mesh's own
-/// triangles are prescribed, linear on each: the body is the polyhedron, so that its shape adds nothing to the error.
+/// triangles are prescribed: the body is the polyhedron, so that its shape adds nothing to the error.
 /// What comes out is compared with the exact displacements at the vertices, up to a rigid motion, which tractions leave
 /// open.
 #pragma once
@@ -18,8 +18,8 @@ struct PointLoad {
 
   /// N by 3, at the vertices.
   Points displacements(const TriangleMesh& skin) const;
-  /// 3 #T by 3, row 3 t + c at corner c of triangle t.
-  Points tractions(const TriangleMesh& skin) const;
+  /// On a plane through x.
+  Vec3 traction(const Vec3& x, const Vec3& normal) const;
 };
 
 /// Solves the problem by either method in a process of its own. As measure_response; besides: rms_error and max_error

@@ -25,7 +25,7 @@ struct Response {
 };
 
 Response by_boundary_elements(const Skin& skin, const ResponseCase& c) {
-  ResponseModel model(skin.mesh, {.poisson = c.poisson, .tolerance = c.tolerance});
+  ResponseModel model(skin.mesh, {.poisson = c.poisson, .tolerance = c.tolerance, .displacements = c.displacements});
   model.add(skin.landmarks);
   Response response{model.response(), {}};
   const ResponseSummary& s = model.summary();
@@ -118,6 +118,7 @@ nlohmann::json described(const ChildOutcome& outcome, const std::string& family,
                         {"threads", c.threads},        {"poisson", c.poisson}, {"peak_bytes", outcome.peak_bytes}};
   if (c.method == Method::boundary_elements) {
     run["tolerance"] = c.tolerance;
+    run["displacements"] = c.displacements == Displacements::curved ? "curved" : "linear";
   } else {
     run["quality"] = c.quality;
   }

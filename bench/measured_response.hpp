@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <skinbem/mesh/triangle_mesh.hpp>
-#include <skinbem/response/landmark.hpp>
+#include <skinbem/response/response_model.hpp>
 
 #include "measured_child.hpp"
 
@@ -36,14 +36,15 @@ std::vector<Method> methods();
 struct ResponseCase {
   Method method = Method::boundary_elements;
   double poisson = 0.45;
-  double tolerance = 2e-4;    ///< of boundary elements
-  std::string quality = "q";  ///< of finite elements: TetGen's switches
+  double tolerance = 2e-4;                              ///< of boundary elements
+  Displacements displacements = Displacements::linear;  ///< theirs
+  std::string quality = "q";                            ///< of finite elements: TetGen's switches
   int threads = 1;
   std::filesystem::path keep = {};  ///< the response is written here; empty: not kept
 };
 
-/// One object: method, family, vertices, unknowns, threads, poisson, tolerance or quality, seconds by stage and total,
-/// peak_bytes, and what the method tells of itself; or failure.
+/// One object: method, family, vertices, unknowns, threads, poisson, tolerance and displacements or quality, seconds by
+/// stage and total, peak_bytes, and what the method tells of itself; or failure.
 nlohmann::json measure_response(const Skin& skin, const ResponseCase& c, const ChildLimits& limits);
 
 /// What is told of every run, of either kind: its case, its memory, and what came out or why nothing did.

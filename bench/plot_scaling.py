@@ -22,6 +22,7 @@ from matplotlib.ticker import FuncFormatter  # noqa: E402
 NAME = {"bem": "boundary elements", "fem": "tetrahedral FEM"}
 COLOUR = {"bem": "#0072b2", "fem": "#d55e00"}  # distinct for colour-blind readers too
 MARKER = {"bem": "o", "fem": "s"}
+VARIANT = {"bem": "displacements", "fem": "quality"}
 DASHES = ["-", "--", ":", "-."]
 
 
@@ -81,12 +82,13 @@ def draw_errors_of(axis, report, experiment, poisson):
     axes_of(axis, "mesh to displacements, s", "relative error (rms)")
     axis.set_title(f"{experiment}, $\\nu$ = {poisson:g}", fontsize=10)
     for method in values(report, "method"):
-        qualities = values({"runs": finished(report, method=method)}, "quality") or [None]
-        for dashes, quality in zip(DASHES, qualities):
-            runs = finished(report, experiment=experiment, poisson=poisson, method=method, quality=quality)
+        key = VARIANT[method]
+        variants = values({"runs": finished(report, method=method)}, key) or [None]
+        for dashes, variant in zip(DASHES, variants):
+            runs = finished(report, experiment=experiment, poisson=poisson, method=method, **{key: variant})
             if not runs:
                 continue
-            label = NAME[method] + (f" ({quality})" if len(qualities) > 1 else "")
+            label = NAME[method] + (f" ({variant})" if len(variants) > 1 else "")
             time, error = [r["seconds"]["total"] for r in runs], [r["rms_error"] for r in runs]
             axis.plot(time, error, ls=dashes, color=COLOUR[method], marker=MARKER[method], label=label)
             for run, x, y in zip(runs, time, error):

@@ -60,6 +60,7 @@ struct ResponseModel::State {
   IndexLists neighbours;
   Eigen::VectorXd areas;
   Eigen::MatrixXd B;
+  SharedCurvature curvature;              ///< where displacements are curved
   std::unique_ptr<NeumannSolver> solver;  ///< none while it is to be compressed anew
   std::vector<GreensFunctions> greens;
   std::vector<Landmark> landmarks;
@@ -77,6 +78,9 @@ struct ResponseModel::State {
         neighbours(neighbours_of_vertices(mesh)),
         areas(vertex_areas(mesh)),
         B(rigid_modes(mesh.vertices)),
+        curvature(given.displacements == Displacements::curved
+                      ? std::make_shared<const RecoveredCurvature>(mesh, given.poisson)
+                      : nullptr),
         compressed_to(given.tolerance) {
     summary.prediction =
         choose_solver(options.solver, mesh, options.tolerance, omp_get_max_threads(), options.memory_limit);
@@ -92,7 +96,7 @@ struct ResponseModel::State {
     summary.near_share = double(counts.near) / double(counts.pairs);
     summary.assemble_seconds = watch.lap();
     report(options.progress, "factor", 0);
-    solver = make_dense_solver(std::move(H), B, std::max(wanted * distance, std::min(wanted, smallest)));
+    solver = make_dense_solver(std::move(H), B, std::max(wanted * distance, std::min(wanted, smallest)), curvature);
     const double rotation_residual =
         solver->apply_H(B.rightCols<3>()).cwiseAbs().maxCoeff() / B.rightCols<3>().cwiseAbs().maxCoeff();
     quadrature_error = std::min(options.tolerance, rotation_residual_to_error * rotation_residual);
@@ -103,7 +107,7 @@ struct ResponseModel::State {
   void make_compressed() {
     Stopwatch watch;
     const IterativeOptions iterative = iterative_options();
-    solver = make_iterative_solver(mesh, collocation, B, iterative, options.progress);
+    solver = make_iterative_solver(mesh, collocation, B, iterative, options.progress, curvature);
     residual = iterative.residual;
     answered = false;
     ++summary.compressions;
@@ -168,19 +172,21 @@ struct ResponseModel::State {
     std::vector<GreensFunctions> made;
     Eigen::MatrixXd G(B.rows(), 3 * Index(wanted.size()));
     for (const Landmark& landmark : wanted) {
-      GreensFunctions g{landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}, {}};
-      auto columns = G.middleCols<3>(3 * Index(made.size()));
-      columns = collocation.single_layer_columns(g.patch.traction);
-      g.load = columns.norm();
-      columns /= g.load;
-      made.push_back(std::move(g));
+      made.push_back({landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}, {}});
+      G.middleCols<3>(3 * Index(made.size() - 1)) = collocation.single_layer_columns(made.back().patch.traction);
+    }
+    if (curvature) G -= double_layer_of(curvature_of_loads(made));
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      auto columns = G.middleCols<3>(3 * Index(k));
+      made[k].load = columns.norm();
+      columns /= made[k].load;
     }
     SolveSummary ended;
     report(options.progress, "solve", 0);
     const Eigen::MatrixXd Y = solve_with_defects(G, ended);
     const Eigen::MatrixXd L = B.transpose() * Y;
     const Eigen::MatrixXd X = Y - B * L;
-    const Eigen::MatrixXd left = defects ? defects->of(Y, L, G) : Eigen::MatrixXd(0, G.cols());
+    const Eigen::MatrixXd left = defects ? defects_of(Y, L, G) : Eigen::MatrixXd(0, G.cols());
     for (std::size_t k = 0; k < made.size(); ++k) {
       made[k].X = X.middleCols<3>(3 * Index(k));
       made[k].L = L.middleCols<3>(3 * Index(k));
@@ -191,6 +197,34 @@ struct ResponseModel::State {
     summary.residual = std::max(summary.residual, ended.residual);
     summary.solve_seconds += watch.lap();
     return made;
+  }
+
+  /// S_t t of unit tractions at each landmark, 3N by 3 #landmarks.
+  Eigen::MatrixXd curvature_of_loads(const std::vector<GreensFunctions>& loaded) const {
+    Eigen::MatrixXd s(B.rows(), 3 * Index(loaded.size()));
+    Eigen::VectorXd phi = Eigen::VectorXd::Zero(mesh.vertex_count());
+    for (std::size_t k = 0; k < loaded.size(); ++k) {
+      for (const VertexWeight& weight : loaded[k].patch.traction) phi[weight.vertex] = weight.value;
+      for (int i = 0; i < 3; ++i) {
+        Points mean = Points::Zero(mesh.triangle_count(), 3);
+        for (int c = 0; c < 3; ++c) mean.col(i) += phi(mesh.triangles.col(c)) / 3;
+        s.col(3 * Index(k) + i) = curvature->of_tractions(mean);
+      }
+      for (const VertexWeight& weight : loaded[k].patch.traction) phi[weight.vertex] = 0;
+    }
+    return s;
+  }
+
+  /// (H - C) s.
+  Eigen::MatrixXd double_layer_of(const Eigen::MatrixXd& s) const {
+    return solver->apply_H(s) - curvature->free_part(s);
+  }
+
+  /// What compression and iteration leave of the system's equations.
+  Eigen::MatrixXd defects_of(const Eigen::MatrixXd& Y, const Eigen::MatrixXd& L, const Eigen::MatrixXd& G) const {
+    if (!curvature) return defects->of(Y, L, G);
+    const Eigen::MatrixXd s = curvature->of_displacements(Y);
+    return defects->of(Y + s, L, G + curvature->free_part(s));
   }
 
   /// The first time on a compressed H, random defects are solved for beside G.
@@ -282,7 +316,8 @@ struct ResponseModel::State {
 
   /// Iterates on where the compression is good enough, else compresses less; false where neither is possible.
   bool do_better() {
-    const Eigen::MatrixXd X = all_X();
+    Eigen::MatrixXd X = all_X();
+    if (curvature) X += curvature->of_displacements(X);
     const double compression = estimated_error(defects->of_compression(X, solver->apply_H(X)));
     const double room = (allowed_error() - compression) / summary.estimated_error;  // for the iteration's share
     return (room > 0 && iterate_on(std::clamp(room / 2, 0.02, 0.3))) ||

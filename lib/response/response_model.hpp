@@ -14,15 +14,22 @@
 
 namespace skinbem {
 
+/// What displacements are between the vertices.
+enum class Displacements {
+  linear,  ///< on each triangle, as in Tang (2010)
+  curved,  ///< as their gradients at the vertices say (RecoveredCurvature): nearer to the continuous body
+};
+
 /// What `response` needs to know beside mesh and landmarks.
 struct ResponseOptions {
   /// nu in (-1, 0.5]; a body with cavities: up to 0.49. R depends on no other property of the material.
   double poisson = 0.45;
-  /// Of max|R - R_d| / max|R_d|, R_d the exactly integrated P1 collocation result; 1e-12 to 1e-1.
+  /// Of max|R - R_d| / max|R_d|, R_d the exactly integrated collocation result with such displacements; 1e-12 to 1e-1.
   double tolerance = 1e-6;
   Solver solver = Solver::automatic;
   std::size_t memory_limit = 0;  ///< bytes; 0: what the system has available
   Progress progress = {};
+  Displacements displacements = Displacements::linear;
 
   /// Throws Error(usage) naming the value that is out of its range.
   void validate() const;
@@ -63,8 +70,9 @@ struct GreensFunctions {
 /// and for prescribed displacements u_K, with C = m(X) and m the landmarks' measurement,
 ///   [ C  m(B) ] [ t ]   [ u_K ]
 ///   [ L   0   ] [ a ] = [  0  ],   u = X t + B a = R u_K.
-/// L t = 0 is the discrete condition that the load is in equilibrium. R reproduces rigid motions by construction.
-/// Equal to the mixed system [H_U, -G_K][u_U; t_K] = -H_K u_K of Tang (2010) up to rounding and amplified |H B|.
+/// With curved displacements H is H + (H - C) S, and G_k is G_k - (H - C) S_t t_k. L t = 0 is the discrete condition
+/// that the load is in equilibrium. R reproduces rigid motions by construction. Equal to the mixed system [H_U,
+/// -G_K][u_U; t_K] = -H_K u_K of Tang (2010) up to rounding and amplified |H B|.
 class ResponseModel {
  public:
   /// Assembles and factorises or compresses. The mesh must bound a body (validate.hpp) and is copied. Throws Error.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <sstream>
 
@@ -14,11 +15,54 @@
 namespace skinbem {
 namespace {
 
+/// RecoveredCurvature for vectors in the tree's order.
+class TreeCurvature {
+ public:
+  TreeCurvature(const RecoveredCurvature& curvature, const ClusterTree& tree) {
+    const std::vector<std::int32_t>& order = tree.order();
+    std::vector<std::int32_t> place_of(order.size());
+    for (std::size_t place = 0; place < order.size(); ++place) place_of[order[place]] = std::int32_t(place);
+    for (const std::int32_t vertex : order) {
+      rows_.push_back(curvature.of_displacements()[vertex]);
+      for (auto& [index, block] : rows_.back()) index = place_of[index];
+      free_terms_.push_back(curvature.free_terms()[vertex]);
+    }
+  }
+
+  /// s = S in. What fills up the last panel is zero.
+  void multiply(const VectorBlock& in, VectorBlock& s) const {
+    s.setZero(in.rows(), in.cols());
+#pragma omp parallel for schedule(static)
+    for (std::size_t place = 0; place < rows_.size(); ++place) {
+      for (const auto& [other, block] : rows_[place]) add(block, in, std::int32_t(other), s, std::int32_t(place));
+    }
+  }
+  /// out -= C s.
+  void subtract_free_part(const VectorBlock& s, VectorBlock& out) const {
+#pragma omp parallel for schedule(static)
+    for (std::size_t place = 0; place < rows_.size(); ++place) {
+      add(-free_terms_[place], s, std::int32_t(place), out, std::int32_t(place));
+    }
+  }
+
+ private:
+  /// The rows of a place of `out` += block times the rows of another of `in`.
+  static void add(const Mat3& block, const VectorBlock& in, std::int32_t from, VectorBlock& out, std::int32_t to) {
+    const auto x = in.row(tree_row(from, 0, 3)), y = in.row(tree_row(from, 1, 3)), z = in.row(tree_row(from, 2, 3));
+    for (int i = 0; i < 3; ++i) {
+      out.row(tree_row(to, i, 3)) += block(i, 0) * x + block(i, 1) * y + block(i, 2) * z;
+    }
+  }
+
+  std::vector<SparseBlockRow> rows_;
+  std::vector<Mat3> free_terms_;
+};
+
 template <class T>
 class CompressedSolver final : public NeumannSolver {
  public:
   CompressedSolver(const TriangleMesh& mesh, const Collocation<Kelvin<double>>& collocation, const Eigen::MatrixXd& B,
-                   const IterativeOptions& options, const Progress& progress)
+                   const IterativeOptions& options, const Progress& progress, const SharedCurvature& curvature)
       : H_(mesh, collocation, options.compression, progress),
         schwarz_(mesh, H_, B),
         B_(H_.to_tree(B)),
@@ -26,6 +70,7 @@ class CompressedSolver final : public NeumannSolver {
         gmres_{options.residual},
         progress_(progress) {
     for (const Mat3& block : H_.diagonal()) inverse_diagonal_.push_back(block.inverse());
+    if (curvature) curvature_.emplace(*curvature, H_.tree());
   }
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary) const override {
@@ -101,8 +146,15 @@ class CompressedSolver final : public NeumannSolver {
 
   /// H + B B^T
   BlockOperator system() const {
-    return [this, work = typename CompressedMatrix<T>::Block()](const VectorBlock& in, VectorBlock& out) mutable {
-      H_.multiply(in, out, work);
+    return [this, work = typename CompressedMatrix<T>::Block(), s = VectorBlock()](const VectorBlock& in,
+                                                                                   VectorBlock& out) mutable {
+      if (curvature_) {
+        curvature_->multiply(in, s);
+        H_.multiply(in + s, out, work);
+        curvature_->subtract_free_part(s, out);
+      } else {
+        H_.multiply(in, out, work);
+      }
       add_product(B_, inner_products(B_, in), out);
     };
   }
@@ -146,6 +198,7 @@ class CompressedSolver final : public NeumannSolver {
   VectorBlock B_;  ///< in the tree's order
   CoarseCorrection coarse_;
   std::vector<Mat3> inverse_diagonal_;
+  std::optional<TreeCurvature> curvature_;
   GmresOptions gmres_;
   Progress progress_;
 };
@@ -166,9 +219,11 @@ IterativeOptions IterativeOptions::for_tolerance(double tolerance, Index vertice
 std::unique_ptr<NeumannSolver> make_iterative_solver(const TriangleMesh& mesh,
                                                      const Collocation<Kelvin<double>>& collocation,
                                                      const Eigen::MatrixXd& B, const IterativeOptions& options,
-                                                     const Progress& progress) {
-  if (options.single) return std::make_unique<CompressedSolver<float>>(mesh, collocation, B, options, progress);
-  return std::make_unique<CompressedSolver<double>>(mesh, collocation, B, options, progress);
+                                                     const Progress& progress, SharedCurvature curvature) {
+  if (options.single) {
+    return std::make_unique<CompressedSolver<float>>(mesh, collocation, B, options, progress, curvature);
+  }
+  return std::make_unique<CompressedSolver<double>>(mesh, collocation, B, options, progress, curvature);
 }
 
 }  // namespace skinbem

@@ -13,13 +13,13 @@ namespace {
 
 class DenseSolver final : public NeumannSolver {
  public:
-  DenseSolver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance)
-      : A_(std::move(H)), B_(B), tolerance_(tolerance) {
+  DenseSolver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance, SharedCurvature curvature)
+      : A_(std::move(H)), B_(B), tolerance_(tolerance), curvature_(std::move(curvature)) {
     if (A_.rows() != A_.cols() || B_.rows() != A_.rows() || B_.cols() != 6) {
       throw Error(ErrorCode::usage, "dense solver: H must be 3N by 3N and B 3N by 6");
     }
     A_.noalias() += B_ * B_.transpose();
-    single_.emplace(A_.cast<float>());
+    single_.emplace(system<float>());
     contraction_ = measure_contraction();
   }
 
@@ -27,7 +27,7 @@ class DenseSolver final : public NeumannSolver {
     SolveSummary ended;
     Eigen::MatrixXd Y = refine(G, ended, contraction_, [&](const Eigen::MatrixXd& r) { return solve_in_single(r); });
     if (!(ended.residual <= tolerance_)) {
-      std::call_once(double_made_, [&] { double_.emplace(A_); });
+      std::call_once(double_made_, [&] { double_.emplace(system<double>()); });
       constexpr double unknown = std::numeric_limits<double>::infinity();
       Y = refine(G, ended, unknown, [&](const Eigen::MatrixXd& r) { return double_->solve(r); });
     }
@@ -62,7 +62,7 @@ class DenseSolver final : public NeumannSolver {
     Eigen::RowVectorXd before;
     for (int step = 0; step < 2; ++step) {
       before = r.colwise().norm();
-      add_product(-1, solve_in_single(r), r);
+      add_system_product(-1, solve_in_single(r), r);
     }
     return safety * (r.colwise().norm().array() / before.array()).maxCoeff();
   }
@@ -81,7 +81,7 @@ class DenseSolver final : public NeumannSolver {
     constexpr int most_steps = 20;
     for (ended.iterations = 0;; ++ended.iterations) {
       Eigen::MatrixXd r = g;
-      add_product(-1, Y, r);
+      add_system_product(-1, Y, r);
       const double residual = r.colwise().norm().maxCoeff();
       if (!(residual < ended.residual)) {  // the last step made it worse
         Y -= step;
@@ -101,6 +101,51 @@ class DenseSolver final : public NeumannSolver {
     return Y.array().rowwise() * size.array();
   }
 
+  /// The matrix of the system as such.
+  template <class T>
+  Rows<T> system() const {
+    Rows<T> M = A_.cast<T>();
+    if (!curvature_) return M;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (Index first = 0; first < M.rows(); first += Band<T>::RowsAtCompileTime) {
+      const Index rows = std::min<Index>(Band<T>::RowsAtCompileTime, M.rows() - first);
+      M.middleRows(first, rows) += curved_part<T>(first, rows).topRows(rows);
+    }
+    return M;
+  }
+
+  /// Rows of some vertices, of a size that the compiler knows.
+  template <class T>
+  using Band = Eigen::Matrix<T, 24, Eigen::Dynamic>;
+
+  /// Rows of (H - C) S, filled up.
+  template <class T>
+  Band<T> curved_part(Index first, Index rows) const {
+    Band<T> H = Band<T>::Zero(Band<T>::RowsAtCompileTime, A_.cols());
+    H.topRows(rows) = A_.middleRows(first, rows).template cast<T>();
+    H.topRows(rows) -= (B_.middleRows(first, rows) * B_.transpose()).template cast<T>();
+    for (Index row = 0; row < rows; row += 3) {
+      const Index vertex = (first + row) / 3;
+      H.template block<3, 3>(row, 3 * vertex) -= curvature_->free_terms()[std::size_t(vertex)].template cast<T>();
+    }
+    Band<T> result = Band<T>::Zero(Band<T>::RowsAtCompileTime, A_.cols());
+    for (std::size_t k = 0; k < curvature_->of_displacements().size(); ++k) {
+      const auto of_vertex = H.template middleCols<3>(3 * Index(k));
+      for (const auto& [column, block] : curvature_->of_displacements()[k]) {
+        result.template middleCols<3>(3 * Index(column)) += of_vertex.lazyProduct(block.template cast<T>());
+      }
+    }
+    return result;
+  }
+
+  /// result += alpha times system() V.
+  void add_system_product(double alpha, const Eigen::MatrixXd& V, Eigen::MatrixXd& result) const {
+    if (!curvature_) return add_product(alpha, V, result);
+    const Eigen::MatrixXd s = curvature_->of_displacements(V);
+    add_product(alpha, V + s, result);
+    result -= alpha * (B_ * (B_.transpose() * s) + curvature_->free_part(s));
+  }
+
   /// result += alpha A V.
   void add_product(double alpha, const Eigen::MatrixXd& V, Eigen::MatrixXd& result) const {
     if (V.cols() > few_columns) return lapack::add_product(alpha, A_, V, result);
@@ -115,6 +160,7 @@ class DenseSolver final : public NeumannSolver {
   RowMajorMatrix A_;  ///< H + B B^T
   Eigen::MatrixXd B_;
   double tolerance_;
+  SharedCurvature curvature_;  ///< none where displacements are linear between the vertices
   std::optional<Lu<float>> single_;
   double contraction_;  ///< of a residual, by one step of refinement with it: at most
   mutable std::optional<Lu<double>> double_;
@@ -123,8 +169,9 @@ class DenseSolver final : public NeumannSolver {
 
 }  // namespace
 
-std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance) {
-  return std::make_unique<DenseSolver>(std::move(H), B, tolerance);
+std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance,
+                                                 SharedCurvature curvature) {
+  return std::make_unique<DenseSolver>(std::move(H), B, tolerance, std::move(curvature));
 }
 
 }  // namespace skinbem

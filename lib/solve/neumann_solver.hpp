@@ -9,6 +9,7 @@
 #include <skinbem/base/progress.hpp>
 #include <skinbem/base/types.hpp>
 #include <skinbem/hmatrix/compressed_matrix.hpp>
+#include <skinbem/operator/recovered_curvature.hpp>
 
 namespace skinbem {
 
@@ -20,16 +21,19 @@ struct SolveSummary {
   double residual = 0;
 };
 
+/// Of what linear interpolation of displacements misses; empty where that is to be missed.
+using SharedCurvature = std::shared_ptr<const RecoveredCurvature>;
+
 /// (H + B B^T)^-1: H the double layer's matrix (3N by 3N, null space the rigid motions), B their orthonormal basis
-/// (rigid_modes). A second-kind operator, well conditioned for a solid body. Factorised or prepared by its maker, then
-/// used for any number of right-hand sides.
+/// (rigid_modes). A second-kind operator, well conditioned for a solid body. Made with a curvature, (H + (H - C) S + B
+/// B^T)^-1. Factorised or prepared by its maker, then used for any number of right-hand sides.
 class NeumannSolver {
  public:
   virtual ~NeumannSolver() = default;
-  /// Y (3N by #columns) with (H + B B^T) Y = G, to the tolerance it was made with. Throws Error(numerical) with the
-  /// residual that was reached where it cannot.
+  /// Y (3N by #columns) with (H + B B^T) Y = G (or the curved system), to the tolerance it was made with. Throws
+  /// Error(numerical) with the residual that was reached where it cannot.
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& G, SolveSummary* summary = nullptr) const = 0;
-  /// H times V, as the solver has it.
+  /// H times V, as the solver has it, without curvature.
   virtual Eigen::MatrixXd apply_H(const Eigen::MatrixXd& V) const = 0;
   /// Iterative: the residual at which a column has converged from now on. Nothing for a dense solver.
   virtual void set_residual(double) {}
@@ -43,7 +47,8 @@ class NeumannSolver {
 
 /// Dense: LU in single precision (half the time and memory) refined to `tolerance` with residuals in double; where that
 /// does not converge, LU in double. Takes H; B is 3N by 6. Throws Error(numerical) for a singular system.
-std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance);
+std::unique_ptr<NeumannSolver> make_dense_solver(RowMajorMatrix H, const Eigen::MatrixXd& B, double tolerance,
+                                                 SharedCurvature curvature = {});
 
 /// What the iterative solver needs to know.
 struct IterativeOptions {
@@ -61,6 +66,6 @@ struct IterativeOptions {
 std::unique_ptr<NeumannSolver> make_iterative_solver(const TriangleMesh& mesh,
                                                      const Collocation<Kelvin<double>>& collocation,
                                                      const Eigen::MatrixXd& B, const IterativeOptions& options,
-                                                     const Progress& progress = {});
+                                                     const Progress& progress = {}, SharedCurvature curvature = {});
 
 }  // namespace skinbem

@@ -116,6 +116,24 @@ TEST(CompressedResponseOf, NeedleThatIsTooLongNamesItsTip) {
   }
 }
 
+TEST(CompressedResponseOf, CurvedDisplacementsMeetTheirToleranceAndTheirEstimate) {
+  constexpr double requested = 2e-4;
+  for (const TriangleMesh& mesh : {cube(12), slender_ellipsoid(4)}) {
+    const std::vector<Landmark> landmarks = landmarks_on(spread_vertices(mesh, 5));
+    const auto curved = [&](double tolerance, Solver solver) {
+      ResponseModel made(mesh, {.tolerance = tolerance, .solver = solver, .displacements = Displacements::curved});
+      made.add(landmarks);
+      return made;
+    };
+    const ResponseModel dense = curved(1e-5, Solver::dense), compressed = curved(requested, Solver::hmatrix);
+    const double error = difference(compressed, dense);
+    EXPECT_LE(error, tolerance::compressed_response * requested);
+    EXPECT_LE(error, tolerance::compressed_estimate * compressed.summary().estimated_error);
+    EXPECT_LE(compressed.summary().estimated_error, 1.5 * requested);
+    EXPECT_GT(difference(dense, model(mesh, 1e-5, Solver::dense)), 10 * requested);  // another answer
+  }
+}
+
 /// H in 16 bits, as it is for large skins: their dense matrix would not fit, and a compressed one in double precision
 /// takes its place.
 TEST(CompressedResponseOf, LargeSkinMeetsItsToleranceAndItsEstimate) {

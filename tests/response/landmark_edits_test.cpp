@@ -59,6 +59,21 @@ TEST_F(LandmarkEdits, Moving) {
   expect_as_fresh(landmarks_on({0, 12, 30, 50}));
 }
 
+TEST_F(LandmarkEdits, WithCurvedDisplacements) {
+  const auto curved = [&](const std::vector<std::int32_t>& vertices) {
+    ResponseModel model(mesh_, {.tolerance = 1e-10, .displacements = Displacements::curved});
+    model.add(landmarks_on(vertices));
+    return model;
+  };
+  ResponseModel edited = curved({0, 9, 30});
+  edited.add(landmarks_on({50}));
+  edited.move(1, landmarks_on({12})[0]);
+  const Eigen::MatrixXd expected = curved({0, 12, 30, 50}).response();
+  EXPECT_LE((edited.response() - expected).cwiseAbs().maxCoeff(), tolerance::rounding_of_sums);
+  model_.move(1, landmarks_on({12})[0]);
+  EXPECT_GT((model_.response() - expected).cwiseAbs().maxCoeff(), tolerance::leg_of_2k / 10);  // another answer
+}
+
 TEST_F(LandmarkEdits, Removing) {
   model_.remove(1);
   expect_as_fresh(landmarks_on({0, 30, 50}));

@@ -6,6 +6,7 @@
 #include <skinbem/solve/neumann_solver.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
 
+#include "meshes.hpp"
 #include "tolerances.hpp"
 
 namespace skinbem {
@@ -88,6 +89,23 @@ TEST(DenseSolver, AppliesHWithoutTheRigidModesThatItWasShiftedBy) {
   const Eigen::MatrixXd V = Eigen::MatrixXd::Random(3 * kNodes, 3);
   EXPECT_LE((solver->apply_H(V) - H * V).cwiseAbs().maxCoeff(), tolerance::rounding_of_sums);
   EXPECT_LE(solver->apply_H(B).cwiseAbs().maxCoeff(), tolerance::rounding_of_sums);
+}
+
+TEST(DenseSolver, SolvesTheCurvedSystemAndStillAppliesH) {
+  const TriangleMesh mesh = testing_support::torus();
+  const auto curvature = std::make_shared<const RecoveredCurvature>(mesh, 0.3);
+  const Eigen::MatrixXd B = rigid_modes(mesh.vertices);
+  const Eigen::MatrixXd H = operator_like_H(B, 0.002);
+  const auto solver = make_dense_solver(H, B, 1e-10, curvature);
+  const Eigen::MatrixXd G = Eigen::MatrixXd::Random(H.rows(), 4);
+  SolveSummary summary;
+  const Eigen::MatrixXd Y = solver->solve(G, &summary), s = curvature->of_displacements(Y);
+  const Eigen::MatrixXd left = H * (Y + s) - curvature->free_part(s) + B * (B.transpose() * Y) - G;
+  EXPECT_LE((left.colwise().norm().array() / G.colwise().norm().array()).maxCoeff(),
+            summary.residual + tolerance::rounding_of_sums);
+  EXPECT_LE(summary.residual, 1e-10);
+  EXPECT_LE(summary.iterations, 3);  // what was factorised is that system
+  EXPECT_LE((solver->apply_H(Y) - H * Y).cwiseAbs().maxCoeff(), tolerance::rounding_of_sums * Y.cwiseAbs().maxCoeff());
 }
 
 ErrorCode code_of_solving(const Eigen::MatrixXd& H, const Eigen::MatrixXd& B) {
