@@ -38,7 +38,7 @@ Options parse(int argc, char** argv) {
                  "the last three; 0: only the known field")
       ->check(CLI::Range(3, 5) | CLI::IsMember({0}))
       ->capture_default_str();
-  app.add_option("--rival-levels", o.rival_levels, "meshes for finite elements, where more than --levels")
+  app.add_option("--rival-levels", o.rival_levels, "meshes for finite elements, where more than for boundary elements")
       ->check(CLI::Range(0, 5))
       ->capture_default_str();
   app.add_option("--known-levels", o.known_levels,
@@ -81,6 +81,11 @@ std::vector<ResponseCase> contenders(const Options& o, double poisson) {
     }
   }
   return cases;
+}
+
+/// On meshes where only the rivals go on.
+void leave_rivals(std::vector<ResponseCase>& cases) {
+  std::erase_if(cases, [](const ResponseCase& c) { return c.method == Method::boundary_elements; });
 }
 
 /// An answer for the smooth body, with the numbers that say how far to trust it.
@@ -165,9 +170,7 @@ nlohmann::json compare_responses(double poisson, const Options& o, nlohmann::jso
   }
   const TemporaryFolder folder;
   for (std::size_t level = 0; level < skins.size(); ++level) {
-    if (level == static_cast<std::size_t>(o.levels)) {  // the rivals go on alone
-      std::erase_if(cases, [](const ResponseCase& c) { return c.method == Method::boundary_elements; });
-    }
+    if (level == static_cast<std::size_t>(o.levels)) leave_rivals(cases);
     const auto measure = [&](ResponseCase c) {
       c.keep = folder.path() / "R.npy";
       nlohmann::json run = measure_response(skins[level], c, limits_of(o));
@@ -180,13 +183,15 @@ nlohmann::json compare_responses(double poisson, const Options& o, nlohmann::jso
 }
 
 void compare_with_known_field(double poisson, const Options& o, nlohmann::json& rows) {
-  const std::vector<Skin> skins = limb_skins(o.data, o.known_levels - 1, o.radius);
+  const std::vector<Skin> skins = limb_skins(o.data, std::max(o.known_levels, o.rival_levels) - 1, o.radius);
+  std::vector<ResponseCase> cases = contenders(o, poisson);
   // 63 mm from the calf, a limb's thickness: smooth on the coarsest mesh, and nowhere simple.
   const PointLoad field{{120, 20, 300}, {1, 2, -1}, poisson};
-  for (const Skin& skin : skins) {
+  for (std::size_t level = 0; level < skins.size(); ++level) {
+    if (level == static_cast<std::size_t>(o.known_levels)) leave_rivals(cases);
     take_turns(
-        "known field", contenders(o, poisson), o,
-        [&](const ResponseCase& c) { return measure_manufactured(skin.mesh, field, c, limits_of(o)); }, rows);
+        "known field", cases, o,
+        [&](const ResponseCase& c) { return measure_manufactured(skins[level].mesh, field, c, limits_of(o)); }, rows);
   }
 }
 

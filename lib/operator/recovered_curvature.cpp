@@ -107,6 +107,16 @@ Eigen::VectorXd RecoveredCurvature::of_tractions(const Points& tractions) const 
   return s;
 }
 
+Eigen::MatrixXd RecoveredCurvature::of_tractions(std::span<const VertexWeight> density) const {
+  Eigen::VectorXd at_vertices = Eigen::VectorXd::Zero(mesh_.vertex_count());
+  for (const VertexWeight& weight : density) at_vertices[weight.vertex] = weight.value;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(mesh_.triangle_count());
+  for (int c = 0; c < 3; ++c) mean += at_vertices(mesh_.triangles.col(c)) / 3;
+  Eigen::MatrixXd s(3 * mesh_.vertex_count(), 3);
+  for (int i = 0; i < 3; ++i) s.col(i) = of_tractions(Points(mean * Vec3::Unit(i).transpose()));
+  return s;
+}
+
 Eigen::MatrixXd RecoveredCurvature::free_part(const Eigen::MatrixXd& V) const {
   Eigen::MatrixXd result(V.rows(), V.cols());
   for (Index k = 0; k < mesh_.vertex_count(); ++k) {

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <skinbem/mesh/adjacency.hpp>
+#include <skinbem/operator/collocation.hpp>
 
 namespace skinbem {
 
@@ -49,6 +51,8 @@ class RecoveredCurvature {
   Eigen::MatrixXd of_displacements(const Eigen::MatrixXd& V) const;
   /// S_t t, 3N, for the mean traction on each triangle, #T by 3.
   Eigen::VectorXd of_tractions(const Points& tractions) const;
+  /// The same for unit tractions along x, y and z times a density: 3N by 3, as Collocation::single_layer_columns.
+  Eigen::MatrixXd of_tractions(std::span<const VertexWeight> density) const;
   /// C, a block for each vertex.
   const std::vector<Mat3>& free_terms() const { return free_terms_; }
   /// C V.

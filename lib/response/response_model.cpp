@@ -175,7 +175,7 @@ struct ResponseModel::State {
       made.push_back({landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}, {}});
       G.middleCols<3>(3 * Index(made.size() - 1)) = collocation.single_layer_columns(made.back().patch.traction);
     }
-    if (curvature) G -= double_layer_of(curvature_of_loads(made));
+    if (curvature) G -= curved_part(made);
     for (std::size_t k = 0; k < made.size(); ++k) {
       auto columns = G.middleCols<3>(3 * Index(k));
       made[k].load = columns.norm();
@@ -199,24 +199,12 @@ struct ResponseModel::State {
     return made;
   }
 
-  /// S_t t of unit tractions at each landmark, 3N by 3 #landmarks.
-  Eigen::MatrixXd curvature_of_loads(const std::vector<GreensFunctions>& loaded) const {
+  /// What the curvature under unit tractions at each landmark takes from their G: (H - C) S_t t.
+  Eigen::MatrixXd curved_part(const std::vector<GreensFunctions>& loaded) const {
     Eigen::MatrixXd s(B.rows(), 3 * Index(loaded.size()));
-    Eigen::VectorXd phi = Eigen::VectorXd::Zero(mesh.vertex_count());
     for (std::size_t k = 0; k < loaded.size(); ++k) {
-      for (const VertexWeight& weight : loaded[k].patch.traction) phi[weight.vertex] = weight.value;
-      for (int i = 0; i < 3; ++i) {
-        Points mean = Points::Zero(mesh.triangle_count(), 3);
-        for (int c = 0; c < 3; ++c) mean.col(i) += phi(mesh.triangles.col(c)) / 3;
-        s.col(3 * Index(k) + i) = curvature->of_tractions(mean);
-      }
-      for (const VertexWeight& weight : loaded[k].patch.traction) phi[weight.vertex] = 0;
+      s.middleCols<3>(3 * Index(k)) = curvature->of_tractions(loaded[k].patch.traction);
     }
-    return s;
-  }
-
-  /// (H - C) s.
-  Eigen::MatrixXd double_layer_of(const Eigen::MatrixXd& s) const {
     return solver->apply_H(s) - curvature->free_part(s);
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include <skinbem/io/npy.hpp>
@@ -49,6 +50,22 @@ TEST_F(Response, IsTheProjectsReference) {
           << body << ' ' << poisson;
     }
   }
+}
+
+TEST_F(Response, HasDisplacementsOfTheKindAskedFor) {
+  std::map<std::string, Eigen::MatrixXd> responses;
+  for (const std::string kind : {"", "linear", "curved"}) {
+    Arguments arguments = box_to("R.npy");
+    if (!kind.empty()) arguments.insert(arguments.end(), {"--displacements", kind});
+    const Outcome outcome = run(arguments);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    responses[kind] = read_npy(path("R.npy"));
+  }
+  EXPECT_EQ(responses["linear"], responses[""]);
+  EXPECT_GT((responses["curved"] - responses[""]).cwiseAbs().maxCoeff(), 1e-3);
+  const Outcome refused = run(box_to("R.npy") + Arguments{"--displacements", "cubic"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("choose one of: curved, linear"));
 }
 
 TEST_F(Response, IsTheReferenceOfTheSphere) {
