@@ -60,17 +60,18 @@ void read_response(const ResponseRunOptions& options, const std::string& file, R
                 fmt::format("{}: is {} by {}, {} and {} need {} by {}: make it anew with `skinbem response`", file,
                             run.response.rows(), run.response.cols(), options.mesh, options.landmarks, rows, columns));
   }
-  const skinbem::IndexLists neighbours = skinbem::neighbours_of_vertices(run.mesh);
+  const skinbem::IndexLists triangles = skinbem::triangles_around_vertices(run.mesh);
   const Eigen::VectorXd areas = skinbem::vertex_areas(run.mesh);
   run.positions.resize(static_cast<Index>(run.landmarks.size()), 3);
   for (Index k = 0; k < run.positions.rows(); ++k) {
-    const auto patch = skinbem::make_patch(run.mesh, neighbours, areas, run.landmarks[static_cast<std::size_t>(k)]);
+    const auto patch =
+        skinbem::make_patch(run.mesh, triangles, areas, run.landmarks[static_cast<std::size_t>(k)], options.loads);
     run.positions.row(k) = patch.measure(run.mesh.vertices).transpose();
   }
   if (!(rigid_error(run) < not_of_these)) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: does not move {} along with a rigid motion of {}: it is damaged or of another mesh, "
-                            "other landmarks or another --radius; make it anew with `skinbem response`",
+                            "other landmarks, another --radius or other --loads; make it anew with `skinbem response`",
                             file, options.mesh, options.landmarks));
   }
 }
@@ -79,6 +80,7 @@ void compute_response(const ResponseRunOptions& options, ResponseRun& run) {
   skinbem::ResponseOptions solve;
   solve.poisson = options.poisson;
   solve.displacements = options.displacements;
+  solve.loads = options.loads;
   solve.tolerance = options.tolerance;
   solve.solver = options.solver;
   solve.memory_limit = static_cast<std::size_t>(options.memory_gigabytes * 1e9);
@@ -123,6 +125,12 @@ void add_response_options(CLI::App& command, ResponseRunOptions& options) {
                   "Between vertices: linear, or curved as their gradients say, nearer to the continuous body")
       ->transform(word<skinbem::Displacements>(
           {{"linear", skinbem::Displacements::linear}, {"curved", skinbem::Displacements::curved}}))
+      ->type_name("TEXT")
+      ->default_str("linear");
+  command
+      .add_option("--loads", options.loads,
+                  "Landmarks' tractions between vertices: linear, or smooth: landmarks may be smaller than triangles")
+      ->transform(word<skinbem::Loads>({{"linear", skinbem::Loads::linear}, {"smooth", skinbem::Loads::smooth}}))
       ->type_name("TEXT")
       ->default_str("linear");
   command.add_option("--solver", options.solver, "How the equations are solved: auto, dense or hmatrix (compressed)")

@@ -15,6 +15,7 @@ struct ResponseRunOptions {
   std::string mesh, landmarks;
   double poisson = 0.45, radius = 0, tolerance = 1e-6;
   skinbem::Displacements displacements = skinbem::Displacements::linear;
+  skinbem::Loads loads = skinbem::Loads::linear;
   skinbem::Solver solver = skinbem::Solver::automatic;
   double memory_gigabytes = 0;
   int threads = 0;

@@ -62,7 +62,8 @@ Options parse(int argc, char** argv) {
 
 ChildLimits limits_of(const Options& o) { return {o.memory > 0 ? o.memory * 1e9 : 0.8 * available_bytes(), o.seconds}; }
 
-/// Boundary elements with displacements of either kind, and finite elements with each of the qualities.
+/// Boundary elements as in the paper, and with curved displacements and smooth loads; finite elements with each of the
+/// qualities and such loads.
 std::vector<ResponseCase> contenders(const Options& o, double poisson) {
   ResponseCase c{.poisson = poisson, .tolerance = o.tolerance, .threads = o.threads};
   std::vector<ResponseCase> cases;
@@ -71,10 +72,12 @@ std::vector<ResponseCase> contenders(const Options& o, double poisson) {
     if (method == Method::boundary_elements) {
       for (const Displacements displacements : {Displacements::linear, Displacements::curved}) {
         c.displacements = displacements;
+        c.loads = displacements == Displacements::curved ? Loads::smooth : Loads::linear;
         cases.push_back(c);
       }
       continue;
     }
+    c.loads = Loads::smooth;
     for (const std::string& quality : o.qualities) {
       c.quality = quality;
       cases.push_back(c);

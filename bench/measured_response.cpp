@@ -25,7 +25,8 @@ struct Response {
 };
 
 Response by_boundary_elements(const Skin& skin, const ResponseCase& c) {
-  ResponseModel model(skin.mesh, {.poisson = c.poisson, .tolerance = c.tolerance, .displacements = c.displacements});
+  ResponseModel model(
+      skin.mesh, {.poisson = c.poisson, .tolerance = c.tolerance, .displacements = c.displacements, .loads = c.loads});
   model.add(skin.landmarks);
   Response response{model.response(), {}};
   const ResponseSummary& s = model.summary();
@@ -42,7 +43,7 @@ Response by_boundary_elements(const Skin& skin, const ResponseCase& c) {
 
 #ifdef SKINBEM_BENCH_RIVAL
 Response by_finite_elements(const Skin& skin, const ResponseCase& c) {
-  TetrahedralFem fem(skin.mesh, {.poisson = c.poisson, .quality = c.quality});
+  TetrahedralFem fem(skin.mesh, {.poisson = c.poisson, .quality = c.quality, .loads = c.loads});
   Response response{fem.response(skin.landmarks), {}};
   const TetrahedralFemSummary& s = fem.summary();
   response.facts = {{"unknowns", 3 * s.nodes},

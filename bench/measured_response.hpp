@@ -37,8 +37,9 @@ struct ResponseCase {
   Method method = Method::boundary_elements;
   double poisson = 0.45;
   double tolerance = 2e-4;                              ///< of boundary elements
-  Displacements displacements = Displacements::linear;  ///< theirs
-  std::string quality = "q";                            ///< of finite elements: TetGen's switches
+  Displacements displacements = Displacements::linear;  ///< of boundary elements
+  Loads loads = Loads::linear;
+  std::string quality = "q";  ///< of finite elements: TetGen's switches
   int threads = 1;
   std::filesystem::path keep = {};  ///< the response is written here; empty: not kept
 };

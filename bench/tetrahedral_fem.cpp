@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <array>
+#include <skinbem/base/error.hpp>
 #include <skinbem/base/stopwatch.hpp>
-#include <skinbem/response/landmark_patch.hpp>
 #include <skinbem/solve/rigid_modes.hpp>
 #include <utility>
 
@@ -38,12 +38,9 @@ class Threads {
 
 /// The three unit loads of a landmark: 3N by 3.
 Eigen::MatrixXd unit_loads(const TriangleMesh& skin, const LandmarkPatch& patch) {
-  Eigen::VectorXd density = Eigen::VectorXd::Zero(skin.vertex_count());
-  for (const VertexWeight& w : patch.traction) density[w.vertex] = w.value;
-  const Points tractions = density(skin.triangles.reshaped<Eigen::RowMajor>()).replicate<1, 3>();
-  const Points forces = consistent_forces(skin, tractions);
+  const Eigen::VectorXd forces = loads_of_vertices(skin, patch.traction);
   Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(3 * skin.vertex_count(), 3);
-  for (Index i = 0; i < forces.rows(); ++i) loads.block<3, 3>(3 * i, 0).diagonal() = forces.row(i);
+  for (Index i = 0; i < forces.rows(); ++i) loads.block<3, 3>(3 * i, 0).diagonal().setConstant(forces[i]);
   return loads;
 }
 
@@ -60,17 +57,6 @@ Eigen::MatrixXd measure(const std::vector<LandmarkPatch>& patches, const Eigen::
 }
 
 }  // namespace
-
-Points consistent_forces(const TriangleMesh& skin, const Points& tractions) {
-  Points forces = Points::Zero(skin.vertex_count(), 3);
-  for (Index t = 0; t < skin.triangle_count(); ++t) {
-    const double twelfth = area_vector(skin, t).norm() / 24;
-    const auto corners = skin.triangles.row(t);
-    const auto here = tractions.middleRows<3>(3 * t);
-    for (int c = 0; c < 3; ++c) forces.row(corners[c]) += twelfth * (here.colwise().sum() + here.row(c));
-  }
-  return forces;
-}
 
 struct TetrahedralFem::State {
   TriangleMesh skin;
@@ -119,14 +105,14 @@ Eigen::MatrixXd TetrahedralFem::displacements(const Eigen::MatrixXd& forces) {
 // the prescribed measurements.
 Eigen::MatrixXd TetrahedralFem::response(std::span<const Landmark> landmarks) {
   const TriangleMesh& skin = state_->skin;
-  const IndexLists neighbours = neighbours_of_vertices(skin);
+  const IndexLists triangles = triangles_around_vertices(skin);
   const Eigen::VectorXd areas = vertex_areas(skin);
   const Index n = 3 * Index(landmarks.size());
   std::vector<LandmarkPatch> patches;
   Eigen::MatrixXd forces(3 * skin.vertex_count(), n);
   for (const Landmark& landmark : landmarks) {
     auto columns = forces.middleCols<3>(3 * Index(patches.size()));
-    patches.push_back(make_patch(skin, neighbours, areas, landmark));
+    patches.push_back(make_patch(skin, triangles, areas, landmark, state_->options.loads));
     columns = unit_loads(skin, patches.back());
     columns /= columns.norm();
   }

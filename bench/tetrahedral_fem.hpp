@@ -8,13 +8,14 @@
 #include <string>
 
 #include <skinbem/mesh/triangle_mesh.hpp>
-#include <skinbem/response/landmark.hpp>
+#include <skinbem/response/landmark_patch.hpp>
 
 namespace skinbem::bench {
 
 struct TetrahedralFemOptions {
-  double poisson = 0.45;      ///< in (-1, 0.5)
-  std::string quality = "q";  ///< TetGen's switches, see tetrahedral_mesh.hpp
+  double poisson = 0.45;        ///< in (-1, 0.5)
+  std::string quality = "q";    ///< TetGen's switches, see tetrahedral_mesh.hpp
+  Loads loads = Loads::linear;  ///< as of ResponseOptions
   /// Of the BLAS under CHOLMOD: its fronts are small, so that two take three to six times as long as one (9,666 to
   /// 38,658 vertices).
   int factor_threads = 1;
@@ -52,9 +53,5 @@ class TetrahedralFem {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// Nodal forces int N_i t dS (N by 3) of tractions that are linear on each triangle: row 3 t + c of `tractions` (3 #T
-/// by 3) at corner c of triangle t.
-Points consistent_forces(const TriangleMesh& skin, const Points& tractions);
 
 }  // namespace skinbem::bench

@@ -16,6 +16,7 @@
 #include <skinbem/mesh/adjacency.hpp>
 #include <skinbem/mesh/triangle_mesh.hpp>
 #include <skinbem/operator/element_integral.hpp>
+#include <skinbem/operator/loaded_piece.hpp>
 
 namespace skinbem {
 namespace detail {
@@ -25,12 +26,6 @@ class GaussPoints;
 template <class Kernel, class Real>
 class ColumnBlock;
 }  // namespace detail
-
-/// A scalar density on the surface, sum_i value_i N_i.
-struct VertexWeight {
-  std::int32_t vertex;
-  double value;
-};
 
 /// Where the work went.
 struct AssemblyCounts {
@@ -78,6 +73,7 @@ class Collocation {
 
   /// Columns of G for one density: components N by components, row block k is int U(x_k, .) density dS. Far from many
   /// triangles these are replaced by fewer sources, to the same tolerance.
+  Eigen::MatrixXd single_layer_columns(std::span<const LoadedPiece> density) const;
   Eigen::MatrixXd single_layer_columns(std::span<const VertexWeight> density) const;
 
  private:
@@ -97,8 +93,8 @@ class Collocation {
                                              std::span<const std::int32_t> slot_of) const;
   template <class Real>
   void fill(RowMajorMatrix& H, const Progress& progress, std::span<AssemblyCounts> counts) const;
-  template <class DensityOn>
-  std::optional<detail::FarPatch> far_patch(std::span<const std::int32_t> triangles, const DensityOn& density_on) const;
+  std::optional<detail::FarPatch> far_patch(std::span<const SourceTriangle> sources,
+                                            std::span<const LoadedPiece> density) const;
   template <class Real, class Store>
   void make_panels(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns, const Store& store) const;
   /// Returns how many points of the panel are near.

@@ -232,6 +232,36 @@ void Collocation<Kernel>::double_layer_block(std::span<const std::int32_t> rows,
 }
 
 template <class Kernel>
+Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const LoadedPiece> density) const {
+  std::vector<SourceTriangle> sources;
+  for (const LoadedPiece& piece : density) {
+    const auto& v = triangles_[piece.triangle];
+    const auto corner = [&](int k) -> Eigen::Vector3d {
+      const auto b = piece.corners.col(k);
+      return b[0] * vertices_[v[0]] + b[1] * vertices_[v[1]] + b[2] * vertices_[v[2]];
+    };
+    sources.emplace_back(corner(0), corner(1), corner(2));
+  }
+  const std::optional<detail::FarPatch> far = far_patch(sources, density);
+  Eigen::MatrixXd G(components * node_count(), components);
+  for_each_panel<double>({}, "", [&](Index, const Panel& panel, ColumnBlock<double>& block) {
+    block.prepare({}, 0);
+    if (far && far->serves(panel)) {
+      add_single_layer(integral_.kernel(), panel.points, panel.mask(), far->points(), block.slot(0));
+    } else {
+      detail::GaussPoints gauss;
+      for (std::size_t k = 0; k < sources.size(); ++k) {
+        detail::add_single_layer_of(sources[k], density[k].density, panel, integral_, gauss, block.slot(0));
+      }
+    }
+    for (std::size_t p = 0; p < panel.count; ++p) {
+      G.template block<components, components>(components * Index(panel.vertex[p]), 0) = block.entry(0, p) / scale_;
+    }
+  });
+  return G;
+}
+
+template <class Kernel>
 Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const VertexWeight> density) const {
   std::vector<std::int32_t> support, slots(vertices_.size(), -1);
   std::vector<double> value(vertices_.size(), 0.0);
@@ -242,53 +272,36 @@ Eigen::MatrixXd Collocation<Kernel>::single_layer_columns(std::span<const Vertex
     }
     value[d.vertex] += d.value;
   }
-  const std::vector<std::int32_t> triangles = triangles_around(support, slots);
-  const auto density_on = [&](std::int32_t t) {
+  std::vector<LoadedPiece> triangles;
+  for (const std::int32_t t : triangles_around(support, slots)) {
     const auto& v = triangles_[t];
-    return Eigen::Vector3d(value[v[0]], value[v[1]], value[v[2]]);
-  };
-  const std::optional<detail::FarPatch> far = far_patch(triangles, density_on);
-  Eigen::MatrixXd G(components * node_count(), components);
-  for_each_panel<double>({}, "", [&](Index, const Panel& panel, ColumnBlock<double>& block) {
-    block.prepare({}, 0);
-    if (far && far->serves(panel)) {
-      add_single_layer(integral_.kernel(), panel.points, panel.mask(), far->points(), block.slot(0));
-    } else {
-      detail::GaussPoints gauss;
-      for (const std::int32_t t : triangles) {
-        detail::add_single_layer_of(sources_[t], density_on(t), panel, integral_, gauss, block.slot(0));
-      }
-    }
-    for (std::size_t p = 0; p < panel.count; ++p) {
-      G.template block<components, components>(components * Index(panel.vertex[p]), 0) = block.entry(0, p) / scale_;
-    }
-  });
-  return G;
+    triangles.push_back({t, Mat3::Identity(), {value[v[0]], value[v[1]], value[v[2]]}});
+  }
+  return single_layer_columns(triangles);
 }
 
-/// The triangles with a density on each, from afar; nothing where they are too few for that to save time.
+/// Triangles with a density on each, from afar; nothing where they are too few for that to save time.
 template <class Kernel>
-template <class DensityOn>
-std::optional<detail::FarPatch> Collocation<Kernel>::far_patch(std::span<const std::int32_t> triangles,
-                                                               const DensityOn& density_on) const {
-  if (triangles.empty()) return {};
+std::optional<detail::FarPatch> Collocation<Kernel>::far_patch(std::span<const SourceTriangle> sources,
+                                                               std::span<const LoadedPiece> density) const {
+  if (sources.empty()) return {};
   Eigen::AlignedBox3d box;
-  for (const std::int32_t t : triangles) {
-    for (const std::int32_t v : triangles_[t]) box.extend(vertices_[v]);
+  for (const SourceTriangle& source : sources) {
+    for (const auto& corner : source.geometry.vertices) box.extend(corner);
   }
   detail::FarPatch far(box, integral_.tolerance());
   const double distance = (detail::FarPatch::separation - 1) * far.radius();
   std::vector<const TriangleRule*> rules;
   std::size_t points = 0;
-  for (const std::int32_t t : triangles) {
-    rules.push_back(integral_.single_layer_rules().rule(distance * distance / sources_[t].radius2));
+  for (const SourceTriangle& source : sources) {
+    rules.push_back(integral_.single_layer_rules().rule(distance * distance / source.radius2));
     if (!rules.back()) return {};
     points += std::size_t(rules.back()->size());
   }
   if (points < 2 * far.size()) return {};
   detail::GaussPoints gauss;
-  for (std::size_t k = 0; k < triangles.size(); ++k) {
-    far.add(gauss.of(sources_[triangles[k]].geometry, *rules[k], density_on(triangles[k])));
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    far.add(gauss.of(sources[k].geometry, *rules[k], density[k].density));
   }
   return far;
 }

@@ -46,6 +46,7 @@ void RecoveredCurvature::for_each_gradient(Index vertex, const Visit& visit) con
     const double weight = third(t) / (16 * vertex_areas_[vertex]);
     for (int c = 0; c < 3; ++c) {
       const std::int32_t other = mesh_.triangles(t, c);
+      if (other == vertex) continue;
       const Vec3 along = weight * (mesh_.vertices.row(other) - mesh_.vertices.row(vertex));
       add_to(directions, static_cast<std::int32_t>(vertex), along);
       add_to<Vec3>(directions, other, -along);
@@ -107,11 +108,9 @@ Eigen::VectorXd RecoveredCurvature::of_tractions(const Points& tractions) const 
   return s;
 }
 
-Eigen::MatrixXd RecoveredCurvature::of_tractions(std::span<const VertexWeight> density) const {
-  Eigen::VectorXd at_vertices = Eigen::VectorXd::Zero(mesh_.vertex_count());
-  for (const VertexWeight& weight : density) at_vertices[weight.vertex] = weight.value;
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(mesh_.triangle_count());
-  for (int c = 0; c < 3; ++c) mean += at_vertices(mesh_.triangles.col(c)) / 3;
+Eigen::MatrixXd RecoveredCurvature::of_tractions(std::span<const LoadedPiece> density) const {
+  Eigen::VectorXd mean = loads_of_triangles(mesh_, density);
+  for (Index t = 0; t < mean.size(); ++t) mean[t] /= area_vector(mesh_, t).norm() / 2;
   Eigen::MatrixXd s(3 * mesh_.vertex_count(), 3);
   for (int i = 0; i < 3; ++i) s.col(i) = of_tractions(Points(mean * Vec3::Unit(i).transpose()));
   return s;

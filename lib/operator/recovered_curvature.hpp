@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <skinbem/mesh/adjacency.hpp>
-#include <skinbem/operator/collocation.hpp>
+#include <skinbem/operator/loaded_piece.hpp>
 
 namespace skinbem {
 
@@ -52,7 +52,7 @@ class RecoveredCurvature {
   /// S_t t, 3N, for the mean traction on each triangle, #T by 3.
   Eigen::VectorXd of_tractions(const Points& tractions) const;
   /// The same for unit tractions along x, y and z times a density: 3N by 3, as Collocation::single_layer_columns.
-  Eigen::MatrixXd of_tractions(std::span<const VertexWeight> density) const;
+  Eigen::MatrixXd of_tractions(std::span<const LoadedPiece> density) const;
   /// C, a block for each vertex.
   const std::vector<Mat3>& free_terms() const { return free_terms_; }
   /// C V.

@@ -57,7 +57,7 @@ struct ResponseModel::State {
   TriangleMesh mesh;
   ResponseOptions options;
   Collocation<Kelvin<double>> collocation;
-  IndexLists neighbours;
+  IndexLists triangles_of_vertex;
   Eigen::VectorXd areas;
   Eigen::MatrixXd B;
   SharedCurvature curvature;              ///< where displacements are curved
@@ -75,7 +75,7 @@ struct ResponseModel::State {
       : mesh(body),
         options(given),
         collocation(mesh, Kelvin<double>{given.poisson, 1.0}, {given.tolerance}),
-        neighbours(neighbours_of_vertices(mesh)),
+        triangles_of_vertex(triangles_around_vertices(mesh)),
         areas(vertex_areas(mesh)),
         B(rigid_modes(mesh.vertices)),
         curvature(given.displacements == Displacements::curved
@@ -172,7 +172,7 @@ struct ResponseModel::State {
     std::vector<GreensFunctions> made;
     Eigen::MatrixXd G(B.rows(), 3 * Index(wanted.size()));
     for (const Landmark& landmark : wanted) {
-      made.push_back({landmark, make_patch(mesh, neighbours, areas, landmark), 0, {}, {}, {}});
+      made.push_back({landmark, make_patch(mesh, triangles_of_vertex, areas, landmark, options.loads), 0, {}, {}, {}});
       G.middleCols<3>(3 * Index(made.size() - 1)) = collocation.single_layer_columns(made.back().patch.traction);
     }
     if (curvature) G -= curved_part(made);

@@ -24,12 +24,14 @@ enum class Displacements {
 struct ResponseOptions {
   /// nu in (-1, 0.5]; a body with cavities: up to 0.49. R depends on no other property of the material.
   double poisson = 0.45;
-  /// Of max|R - R_d| / max|R_d|, R_d the exactly integrated collocation result with such displacements; 1e-12 to 1e-1.
+  /// Of max|R - R_d| / max|R_d|, R_d the exactly integrated collocation result with such displacements and loads;
+  /// 1e-12 to 1e-1.
   double tolerance = 1e-6;
   Solver solver = Solver::automatic;
   std::size_t memory_limit = 0;  ///< bytes; 0: what the system has available
   Progress progress = {};
   Displacements displacements = Displacements::linear;
+  Loads loads = Loads::linear;
 
   /// Throws Error(usage) naming the value that is out of its range.
   void validate() const;

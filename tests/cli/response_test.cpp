@@ -63,6 +63,9 @@ TEST_F(Response, HasDisplacementsOfTheKindAskedFor) {
   }
   EXPECT_EQ(responses["linear"], responses[""]);
   EXPECT_GT((responses["curved"] - responses[""]).cwiseAbs().maxCoeff(), 1e-3);
+  const Outcome smooth = run(box_to("R.npy") + Arguments{"--radius", "0.2", "--loads", "smooth"});
+  ASSERT_EQ(smooth.code, 0) << smooth.err;
+  EXPECT_GT((read_npy(path("R.npy")) - responses[""]).cwiseAbs().maxCoeff(), 1e-3);
   const Outcome refused = run(box_to("R.npy") + Arguments{"--displacements", "cubic"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, HasSubstr("choose one of: curved, linear"));

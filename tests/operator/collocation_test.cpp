@@ -102,6 +102,24 @@ TEST(Collocation, SingleLayerOfSeveralVerticesIsTheSumOfTheirColumns) {
   EXPECT_LE((collocation.single_layer_columns(both) - sum).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(Collocation, SingleLayerOfAPieceIsItsShareOfTheTriangles) {
+  const TriangleMesh mesh = cube(2);
+  const Collocation<Kelvin<double>> collocation(mesh, {0.3, 1.0}, {1e-12});
+  const Vec3 density(1, -2, 0.5);
+  const LoadedPiece whole{7, Mat3::Identity(), density};
+  Mat3 halves[2];  // cut from corner 2 to the middle of the side opposite
+  halves[0] << 1, 0.5, 0, 0, 0.5, 0, 0, 0, 1;
+  halves[1] << 0.5, 0, 0, 0.5, 1, 0, 0, 0, 1;
+  std::vector<LoadedPiece> pieces;
+  for (const Mat3& corners : halves) pieces.push_back({7, corners, corners.transpose() * density});
+  const Eigen::MatrixXd expected = collocation.single_layer_columns(std::span(&whole, 1));
+  EXPECT_LE((collocation.single_layer_columns(pieces) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((loads_of_vertices(mesh, pieces) - loads_of_vertices(mesh, std::span(&whole, 1))).norm(),
+            tolerance::rounding);
+  EXPECT_NEAR(loads_of_triangles(mesh, pieces)[7], density.mean() * area_vector(mesh, 7).norm() / 2,
+              tolerance::rounding);
+}
+
 class Threads : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override { omp_set_num_threads(GetParam()); }

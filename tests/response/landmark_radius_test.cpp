@@ -2,6 +2,7 @@
 // Landmarks that have a size.
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <skinbem/mesh/adjacency.hpp>
 #include <skinbem/mesh/closest_point.hpp>
 #include <skinbem/response/response_model.hpp>
@@ -118,6 +119,67 @@ TEST(LandmarkRadius, BringsTheRealLegOf606VerticesCloserToThatOf2000) {
   const double with_radius = difference_of_legs(45), points = difference_of_legs(0);
   EXPECT_LE(with_radius, tolerance::leg_of_2k);
   EXPECT_LE(with_radius, 0.8 * points);
+}
+
+LandmarkPatch smooth_patch(const TriangleMesh& mesh, std::int32_t vertex, double radius) {
+  return make_patch(mesh, triangles_around_vertices(mesh), vertex_areas(mesh), landmarks_on({vertex}, radius)[0],
+                    Loads::smooth);
+}
+
+TEST(SmoothLoads, HaveTheIntegralOfPhiOnTrianglesOfAnySize) {
+  const TriangleMesh mesh = cube(4);
+  const std::int32_t middle = vertex_at(mesh, {0.5, 0.5, 1});
+  for (const double radius : {0.01, 0.1, 0.24, 0.3, 0.5}) {
+    const LandmarkPatch patch = smooth_patch(mesh, middle, radius);
+    const double expected = std::numbers::pi * radius * radius / 3;
+    EXPECT_NEAR(loads_of_vertices(mesh, patch.traction).sum(), expected, tolerance::smooth_load * expected) << radius;
+    EXPECT_NEAR(loads_of_triangles(mesh, patch.traction).sum(), expected, tolerance::smooth_load * expected) << radius;
+    EXPECT_LE((patch.measure(mesh.vertices) - Vec3(0.5, 0.5, 1)).norm(), tolerance::smooth_load * radius) << radius;
+    double sum = 0;
+    for (const VertexWeight& w : patch.measurement) sum += w.value;
+    EXPECT_NEAR(sum, 1, tolerance::rounding);
+  }
+}
+
+TEST(SmoothLoads, StayOnTheirSideOfASlab) {
+  const TriangleMesh slab = thin_slab(4, 0.05);
+  const LandmarkPatch patch = smooth_patch(slab, vertex_at(slab, {0.5, 0.5, 0}), 0.2);
+  for (const LoadedPiece& piece : patch.traction) {
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(slab.corner(piece.triangle, c)[2], 0);
+  }
+}
+
+TEST(SmoothLoads, OfPointsAndOfNearPointsAreLinearOnes) {
+  const TriangleMesh mesh = cube(3);
+  for (const double radius : {0.0, 1e-300, 1e-5}) {
+    const LandmarkPatch patch = smooth_patch(mesh, 30, radius);
+    ASSERT_EQ(patch.measurement.size(), 1u);
+    EXPECT_EQ(patch.measurement[0].vertex, 30);
+    EXPECT_NEAR(loads_of_vertices(mesh, patch.traction).sum(), vertex_areas(mesh)[30], tolerance::rounding);
+  }
+}
+
+/// Landmarks that are smaller than the triangles of the coarser of two meshes of one cube.
+TEST(SmoothLoads, MakeTheResponseDependLessOnTheMesh) {
+  const std::vector<Vec3> places = {{0.5, 0.5, 1}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1, 0.5, 0.5}};
+  const auto change = [&](Loads loads) {
+    Eigen::MatrixXd at_places[2];
+    for (int k = 0; k < 2; ++k) {
+      const TriangleMesh mesh = cube(k == 0 ? 4 : 8);
+      std::vector<std::int32_t> vertices;
+      for (const Vec3& place : places) vertices.push_back(vertex_at(mesh, place));
+      ResponseModel model(mesh, {.tolerance = 1e-4, .loads = loads});
+      model.add(landmarks_on(vertices, 0.24));
+      const Eigen::MatrixXd R = model.response();
+      at_places[k].resize(24, R.cols());
+      for (int corner = 0; corner < 8; ++corner) {
+        const std::int32_t v = vertex_at(mesh, Vec3(corner & 1, corner >> 1 & 1, corner >> 2));
+        at_places[k].middleRows<3>(3 * corner) = R.middleRows<3>(3 * v);
+      }
+    }
+    return (at_places[1] - at_places[0]).norm() / at_places[1].norm();
+  };
+  EXPECT_LE(3 * change(Loads::smooth), change(Loads::linear)) << change(Loads::smooth) << ' ' << change(Loads::linear);
 }
 
 TEST(Cavity, IsRefusedCloseToIncompressible) {
