@@ -105,6 +105,20 @@ std::vector<VertexWeight> of_sum_one(const Eigen::VectorXd& weights) {
   return result;
 }
 
+/// Weights w_i for int phi u dS where sum_i w_i u_i is that for a u linear between the vertices: as u bows there, half
+/// of what interpolating once more would do (M D^-1, the mass matrix over the areas) is taken back.
+Eigen::VectorXd for_curved_fields(const TriangleMesh& mesh, const Eigen::VectorXd& vertex_areas,
+                                  const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd density = weights.cwiseQuotient(vertex_areas);
+  Eigen::VectorXd again = Eigen::VectorXd::Zero(weights.size());
+  for (Index t = 0; t < mesh.triangle_count(); ++t) {
+    const Vec3 corners = density(mesh.triangles.row(t));
+    if (corners.isZero(0)) continue;
+    again(mesh.triangles.row(t)) += area_vector(mesh, t).norm() / 24 * (Vec3::Constant(corners.sum()) + corners);
+  }
+  return weights + (weights - again) / 2;
+}
+
 LandmarkPatch linear_patch(const TriangleMesh& mesh, const IndexLists& triangles_of_vertex,
                            const Eigen::VectorXd& vertex_areas, std::int32_t centre, const Spread& phi) {
   const auto vertices = reached_vertices(mesh, triangles_of_vertex, centre, [&](std::int32_t, std::int32_t v) {
@@ -121,8 +135,8 @@ LandmarkPatch linear_patch(const TriangleMesh& mesh, const IndexLists& triangles
   return patch;
 }
 
-LandmarkPatch smooth_patch(const TriangleMesh& mesh, const IndexLists& triangles_of_vertex, std::int32_t centre,
-                           const Spread& phi) {
+LandmarkPatch smooth_patch(const TriangleMesh& mesh, const IndexLists& triangles_of_vertex,
+                           const Eigen::VectorXd& vertex_areas, std::int32_t centre, const Spread& phi) {
   const auto vertices = reached_vertices(mesh, triangles_of_vertex, centre, [&](std::int32_t t, std::int32_t) {
     return phi.reaches(
         closest_point_of_triangle(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), phi.centre).position);
@@ -131,7 +145,7 @@ LandmarkPatch smooth_patch(const TriangleMesh& mesh, const IndexLists& triangles
   for (const std::int32_t t : triangles_around(triangles_of_vertex, vertices)) {
     cut(mesh, t, Mat3::Identity(), phi, patch.traction);
   }
-  patch.measurement = of_sum_one(loads_of_vertices(mesh, patch.traction));
+  patch.measurement = of_sum_one(for_curved_fields(mesh, vertex_areas, loads_of_vertices(mesh, patch.traction)));
   return patch;
 }
 
@@ -156,7 +170,7 @@ LandmarkPatch make_patch(const TriangleMesh& mesh, const IndexLists& triangles_o
   const Spread phi{mesh.vertices.row(landmark.vertex), landmark.radius};
   constexpr double point = 0.01;  // of the shortest edge at the vertex
   if (loads == Loads::smooth && landmark.radius > point * shortest_edge(mesh, triangles_of_vertex, landmark.vertex)) {
-    return smooth_patch(mesh, triangles_of_vertex, landmark.vertex, phi);
+    return smooth_patch(mesh, triangles_of_vertex, vertex_areas, landmark.vertex, phi);
   }
   return linear_patch(mesh, triangles_of_vertex, vertex_areas, landmark.vertex, phi);
 }
