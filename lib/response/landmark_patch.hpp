@@ -22,8 +22,9 @@ enum class Loads {
 ///
 /// Linear: t = sum_i phi(d_i / radius) N_i t_k and w_i proportional to phi(d_i / radius) a_i, a_i a third of the area
 /// around vertex i; a radius below the shortest edge at the vertex leaves one hat function and the nodal value.
-/// Smooth: phi is linear on parts of triangles of sides up to a quarter of the radius, w_i proportional to int phi N_i
-/// dS; radius 0 is as in linear.
+/// Smooth: phi is linear on parts of triangles with sides of up to a quarter of the radius, and w_i such that sum_i w_i
+/// u_i is the mean of phi u to the second order (docs/theory.md, section 4); a radius below a hundredth of the shortest
+/// edge at the vertex is as in linear.
 struct LandmarkPatch {
   std::vector<LoadedPiece> traction;      ///< phi, 1 at the landmark's vertex
   std::vector<VertexWeight> measurement;  ///< w_i
