@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 namespace skinbem {
@@ -16,7 +15,6 @@ using std::numbers::pi;
 /// An edge as a triangle sees it.
 struct Side {
   std::int32_t from, to, triangle;
-  auto ends() const { return std::minmax(from, to); }
 };
 
 /// Both sides of each edge, one after the other.
