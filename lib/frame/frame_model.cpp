@@ -10,6 +10,7 @@
 #include <skinbem/base/rigid_fit.hpp>
 #include <skinbem/frame/compression.hpp>
 #include <skinbem/frame/frame_factors.hpp>
+#include <skinbem/frame/reading_order.hpp>
 
 namespace skinbem {
 namespace {
@@ -79,6 +80,9 @@ FrameModel::FrameModel(const Points& rest, const Eigen::MatrixXd& response, cons
       largest_weight_ /= std::max(1.0, compressed.largest_row * static_cast<double>(response.cols()));
     }
   }
+  const auto columns = static_cast<std::size_t>(response.cols());
+  coordinates_.in_turns = detail::faster_in_turns(coordinates_.matrix(), coordinates_.data.size(), columns);
+  packed_.in_turns = detail::faster_in_turns(packed_.matrix(), packed_.data.size(), weight_count());
   if (options.mode == FrameMode::corotated && collinear_measure(landmark_rest) < kNearlyCollinear) {
     warnings_.push_back(
         "the landmarks are nearly collinear, so the rotation of the body about their line is not determined: add a "

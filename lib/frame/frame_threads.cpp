@@ -149,7 +149,7 @@ struct FrameThreads::Crew {
     frame = factors;
     target = to;
     const std::size_t panels = whole.panels();
-    const std::size_t least = whole.from_memory ? detail::kPanelsInTurns : 1;
+    const std::size_t least = whole.in_turns ? detail::kPanelsInTurns : 1;
     piece_panels = std::max({least, kPieceBytes * panels / bytes, panels / kMostPieces}) / least * least;
     const std::size_t pieces = (panels + piece_panels - 1) / piece_panels;
     done.store(0, std::memory_order_relaxed);

@@ -12,21 +12,18 @@
 
 namespace skinbem::detail {
 
-/// Panels of more bytes are taken to come from memory. On a processor with 48 MiB of shared cache, turns gained from 16
-/// to 24 MiB on.
-inline constexpr std::size_t kCacheBytes = std::size_t{16} << 20;
-
 /// The memory of a PanelMatrix.
 struct PackedPanels {
   AlignedVector<std::byte> data;
   std::vector<PanelPlace> places;
   std::size_t vertices = 0;
   bool quantised = false;
+  bool in_turns = false;
   /// max_i sum_k |E_ik|, E the error of R and |.| the Frobenius norm of a 3 by 3 block: times the distance that every
   /// landmark stays within, it bounds the error of any vertex's displacement. 0 in single precision.
   double error_factor = 0;
 
-  PanelMatrix matrix() const { return {data.data(), places.data(), vertices, quantised, data.size() > kCacheBytes}; }
+  PanelMatrix matrix() const { return {data.data(), places.data(), vertices, quantised, in_turns}; }
 };
 
 /// Part of a column of a panel in int16.

@@ -40,7 +40,7 @@ HWY_INLINE void evaluate_panels(const PanelMatrix& matrix, std::size_t first, st
   using Batch = typename Panels::BatchBlock;
   if (frame_count == 1) {
     const auto evaluate =
-        matrix.from_memory ? evaluate_single<Panels, typename Panels::TurnsBlock> : evaluate_single<Panels, Single>;
+        matrix.in_turns ? evaluate_single<Panels, typename Panels::TurnsBlock> : evaluate_single<Panels, Single>;
     evaluate(matrix, first, last, *frames, *targets);
     return;
   }

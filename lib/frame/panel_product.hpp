@@ -15,7 +15,7 @@ inline constexpr std::size_t kHalfPanel = kPanelWidth / 2;
 /// Numbers of one column of a panel: x of 32 vertices, then y, then z.
 inline constexpr std::size_t kColumnNumbers = 3 * kPanelWidth;
 
-/// Panels read in turns where they come from memory: one core reads several places faster than one.
+/// Panels read in turns: from memory, a core of some machines reads several places faster than one.
 inline constexpr std::size_t kPanelsInTurns = 8;
 
 /// Where a panel begins and how many entries (columns, or parts of columns) it has. The rest is for quantised panels.
@@ -44,7 +44,7 @@ struct PanelMatrix {
   const PanelPlace* places = nullptr;
   std::size_t vertices = 0;
   bool quantised = false;
-  bool from_memory = false;  ///< larger than the caches: single frames read kPanelsInTurns at a time. The same bits.
+  bool in_turns = false;  ///< single frames read kPanelsInTurns panels in turns (reading_order.hpp). The same bits.
 
   std::size_t panels() const { return (vertices + kPanelWidth - 1) / kPanelWidth; }
 };

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <skinbem/base/error.hpp>
+#include <skinbem/frame/reading_order.hpp>
 
 #include "frame/models.hpp"
 #include "tolerances.hpp"
@@ -102,6 +103,27 @@ TEST_P(Batch, GivesTheSameBitsAsFramesOneByOne) {
       EXPECT_TRUE(std::equal(single.begin(), single.end(), batch.begin() + std::ptrdiff_t(999 * f))) << f;
     }
   }
+}
+
+/// So large that the order in which frames read it is timed; a batch reads one panel after the other in any case.
+TEST(Frame, OfAModelBeyondTheCachesHasTheSameBitsInEitherOrder) {
+  const SyntheticSkin skin = synthetic_skin(5001, 100);
+  const FrameModel model(skin.rest, skin.response, skin.landmarks);
+  ASSERT_GE(model.bytes(), detail::kLeastBytesInTurns);
+  const std::vector<FrameState> states(2, [&] {
+    FrameState state(model);
+    EXPECT_TRUE(state.set_landmarks(bent(skin, 0.2, 10)));
+    return state;
+  }());
+  std::vector<float> single(3 * 5001), batch(2 * single.size());
+  ASSERT_TRUE(states[0].evaluate(single));
+  ASSERT_TRUE(evaluate_batch(states, batch));
+  EXPECT_TRUE(std::equal(single.begin(), single.end(), batch.begin()));
+}
+
+TEST(ReadingOrder, IsNotTimedForModelsInCaches) {
+  const detail::PanelMatrix not_to_be_read{nullptr, nullptr, 1000};
+  EXPECT_FALSE(detail::faster_in_turns(not_to_be_read, detail::kLeastBytesInTurns - 1, 18));
 }
 
 class ErrorBound : public testing::TestWithParam<FrameStorage> {};

@@ -124,7 +124,7 @@ TEST_P(EveryInstructionSet, SumsQuantisedEntriesOfAnyColumns) {
 }
 
 /// Positions of the panels [first, last) in one frame whose weights are q and whose motion is none.
-std::vector<float> positions_of(PanelMatrix matrix, bool from_memory, std::size_t first, std::size_t last,
+std::vector<float> positions_of(PanelMatrix matrix, bool in_turns, std::size_t first, std::size_t last,
                                 const AlignedVector<float>& q, Index columns) {
   FrameFactors frame;
   frame.weights = q.data();
@@ -132,7 +132,7 @@ std::vector<float> positions_of(PanelMatrix matrix, bool from_memory, std::size_
   repeat_rigid({}, Vec3::Zero(), frame);
   std::vector<float> positions(3 * matrix.vertices);
   const FrameTarget target{positions.data()};
-  matrix.from_memory = from_memory;
+  matrix.in_turns = in_turns;
   panel_product(matrix, first, last, &frame, &target, 1);
   return positions;
 }
