@@ -20,15 +20,15 @@ struct FloatPanels {
   // that is loaded serves several frames.
   static constexpr std::size_t kVectors = std::min<std::size_t>(4, kPanelWidth / kLanes);
   using SingleBlock = Block<kVectors, 1>;
-  using TurnsBlock = Block<kVectors, 1, kPanelsInTurns>;
+  using TurnsBlock = Block<kVectors, 1, kPanelsInTurns, true>;
   using BatchBlock = Block<2, (kLanes >= 16 ? 4 : 2)>;
 
-  /// `count` panels, at most B::kTurns: `first` and those `step` further each.
+  /// `count` panels, at most B::kPanels: `first` and those `step` further each.
   template <class B, class MotionOf>
   static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t step, std::size_t count,
                                   const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets) {
-    if constexpr (!B::kInTurns) count = 1;  // known to the compiler
-    HWY_ALIGN float sums[B::kTurns][B::kFrames * kColumnNumbers];
+    if constexpr (B::kPanels == 1) count = 1;  // known to the compiler
+    HWY_ALIGN float sums[B::kPanels][B::kFrames * kColumnNumbers];
     const std::size_t columns = matrix.places[first].entries;
     std::size_t k = 0;
     do {

@@ -29,17 +29,17 @@ using Vector = hn::Vec<Tag>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
 /// The shape of the work: kVectors vectors of adjacent vertices, kFrames frames at once. There is a sum for each frame,
-/// component and vector. Where kTurns is above one, so many panels are read in turns, a column (or a pair of
-/// columns) of each.
+/// component and vector. kPanels panels, far apart, are evaluated at once: some columns of each, or,
+/// kInTurns, one column (or a pair of columns) of each in turns.
 ///
 /// All loops over sums are expanded from index sequences: compilers keep an array in registers only where every index
 /// is a constant from the outset.
-template <std::size_t kVectors_, std::size_t kFrames_, std::size_t kTurns_ = 1>
+template <std::size_t kVectors_, std::size_t kFrames_, std::size_t kPanels_ = 1, bool kInTurns_ = false>
 struct Block {
   static constexpr std::size_t kVectors = kVectors_;
   static constexpr std::size_t kFrames = kFrames_;
-  static constexpr std::size_t kTurns = kTurns_;
-  static constexpr bool kInTurns = kTurns > 1;
+  static constexpr std::size_t kPanels = kPanels_;
+  static constexpr bool kInTurns = kInTurns_;
   static constexpr std::size_t kSums = 3 * kVectors * kFrames;
   static constexpr std::size_t kVertices = kVectors * kLanes;
 

@@ -25,11 +25,11 @@ HWY_NOINLINE void evaluate_single(const PanelMatrix& matrix, std::size_t first, 
                                   const FrameFactors& frame, const FrameTarget& target) {
   const Motion motion(frame);
   const auto motion_of = [&](std::size_t) -> const Motion& { return motion; };
-  const std::size_t part = (last - first) / B::kTurns;  // each is read as one stream
+  const std::size_t part = (last - first) / B::kPanels;  // each is read as one stream
   for (std::size_t panel = first; panel < first + part; ++panel) {
-    Panels::template evaluate<B>(matrix, panel, part, B::kTurns, &frame, motion_of, &target);
+    Panels::template evaluate<B>(matrix, panel, part, B::kPanels, &frame, motion_of, &target);
   }
-  const std::size_t left = first + part * B::kTurns;
+  const std::size_t left = first + part * B::kPanels;
   if (left < last) Panels::template evaluate<B>(matrix, left, 1, last - left, &frame, motion_of, &target);
 }
 

@@ -40,19 +40,20 @@ HWY_INLINE IntVector add_pair_product(IntVector words, IntVector weights, IntVec
 struct QuantisedPanels {
   // Two integers in registers for every sum, one of each part.
   static constexpr std::size_t kVectors = kLanes >= 8 ? 2 : 1;
-  using SingleBlock = Block<kVectors, 1>;
-  using TurnsBlock = Block<kVectors, 1, kPanelsInTurns>;
+  // Two panels: the weights of the second are split while the products of the first are under way.
+  using SingleBlock = Block<kVectors, 1, 2>;
+  using TurnsBlock = Block<kVectors, 1, kPanelsInTurns, true>;
   using BatchBlock = Block<(kLanes >= 16 ? 2 : 1), 2>;
 
-  /// `count` panels, at most B::kTurns: `first` and those `step` further each.
+  /// `count` panels, at most B::kPanels: `first` and those `step` further each.
   template <class B, class MotionOf>
   static HWY_INLINE void evaluate(const PanelMatrix& matrix, std::size_t first, std::size_t step, std::size_t count,
                                   const FrameFactors* frames, const MotionOf& motion_of, const FrameTarget* targets) {
-    if constexpr (!B::kInTurns) count = 1;  // known to the compiler
-    Panel<B> panels[B::kTurns];
-    SplitWeights weights[B::kTurns][B::kFrames];
-    Integers<B> integers[B::kTurns];
-    HWY_ALIGN float sums[B::kTurns][B::kFrames * kColumnNumbers];
+    if constexpr (B::kPanels == 1) count = 1;  // known to the compiler
+    Panel<B> panels[B::kPanels];
+    SplitWeights weights[B::kPanels][B::kFrames];
+    Integers<B> integers[B::kPanels];
+    HWY_ALIGN float sums[B::kPanels][B::kFrames * kColumnNumbers];
     std::size_t entries = 0;
     for (std::size_t turn = 0; turn < count; ++turn) {
       begin(matrix, first + turn * step, frames, panels[turn], sums[turn]);
@@ -119,6 +120,12 @@ struct QuantisedPanels {
     }
   }
 
+  /// The integer nearest to a product of at most 2^22, from the bits of a float whose last one counts one.
+  static HWY_INLINE IntVector rounded_product(Vector a, Vector b) {
+    const Vector shift = hn::Set(Tag(), 0x1.8p23F);
+    return hn::Sub(hn::BitCast(IntTag(), hn::MulAdd(a, b, shift)), hn::BitCast(IntTag(), shift));
+  }
+
   /// Of the group that begins with `entry`.
   template <class B>
   static HWY_INLINE void split_weights(std::size_t entry, const FrameFactors* frames, const Panel<B>& panel,
@@ -135,7 +142,7 @@ struct QuantisedPanels {
             first < place.adjacent
                 ? hn::LoadU(Tag(), frames[f].weights + place.column + first)
                 : hn::GatherIndex(Tag(), frames[f].weights, hn::Load(IntTag(), which + first - place.adjacent));
-        const IntVector weight = hn::NearestInt(hn::Mul(hn::Mul(hn::Load(Tag(), panel.scale + first), steps), weights));
+        const IntVector weight = rounded_product(hn::Mul(hn::Load(Tag(), panel.scale + first), steps), weights);
         const IntVector high = hn::ShiftRight<kPartBits>(hn::Add(weight, half));
         hn::Store(hn::DemoteTo(parts, high), parts, weights_of[f].high + k);
         hn::Store(hn::DemoteTo(parts, hn::Sub(weight, hn::ShiftLeft<kPartBits>(high))), parts, weights_of[f].low + k);
@@ -148,7 +155,7 @@ struct QuantisedPanels {
   static HWY_INLINE void add_turn(std::size_t entry, std::size_t p, const SplitWeights* weights, Panel<B>& panel,
                                   Integers<B>& integers, float* sums) {
     const std::size_t entries = panel.place->entries;
-    if (B::kInTurns && entry + 2 * p >= entries) return;
+    if (B::kPanels > 1 && entry + 2 * p >= entries) return;  // the other panels have more
     const std::size_t pairs = (std::min(kGroup, entries - entry) + 1) / 2;
     const std::size_t end = B::kInTurns ? p + 1 : pairs;
     for (std::size_t shift = 0; shift < kPanelWidth; shift += B::kVertices) {
